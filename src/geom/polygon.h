@@ -1,0 +1,36 @@
+/* A simple polygon with fast point tests. Vertices counter-clockwise, closed implicitly. */
+#ifndef GEOM_POLYGON_H
+#define GEOM_POLYGON_H
+
+#include "geom/vec.h"
+
+typedef struct Polygon Polygon;
+struct Polygon {
+    uint32_t n;
+    Vec2 *v;
+    Box2 box;
+    double area; /* positive */
+    /* private: horizontal slabs, each listing the edges that reach into it */
+    uint32_t n_slabs;
+    uint32_t *slab_start, *slab_edge;
+};
+
+/* Copies n >= 3 vertices; turns them counter-clockwise. Never fails: whether it is simple is the caller's to know
+ * (polygon_crossing). */
+Polygon *polygon_new(const Vec2 *v, uint32_t n);
+void polygon_free(Polygon *p);
+
+/* Even-odd test, consistent on the boundary: of two polygons sharing an edge a point lies in exactly one.
+ * O(edges in one slab), about n / n_slabs. */
+bool polygon_contains(const Polygon *p, Vec2 q);
+
+/* Signed distance to the boundary, positive inside. O(n). */
+double polygon_depth(const Polygon *p, Vec2 q);
+
+/* Finds two edges i < j that touch or cross other than at a shared vertex. O(n log n) expected. */
+bool polygon_crossing(const Polygon *p, uint32_t *i, uint32_t *j);
+
+/* Centroid of the area. */
+Vec2 polygon_centroid(const Polygon *p);
+
+#endif

@@ -1,0 +1,25 @@
+/* Counter-based random numbers (Philox 4x32-10; Salmon et al. 2011). A number depends on seed, stream, step
+ * and index alone, so it is the same whichever thread asks for it and whatever was asked for before. */
+#ifndef GEOM_RANDOM_H
+#define GEOM_RANDOM_H
+
+#include <stdint.h>
+
+/* One stream for each use, so that adding a use never shifts the numbers of another. */
+typedef enum {
+    RANDOM_DART = 1,      /* auxin source darts */
+    RANDOM_MARGIN = 2,    /* precomputed source set for marginal growth */
+    RANDOM_TEXTURE = 3,   /* colour variation of the blade */
+} RandomStream;
+
+/* Four independent 32-bit words. */
+typedef struct {
+    uint32_t w[4];
+} RandomBlock;
+
+RandomBlock random_block(uint64_t seed, uint32_t stream, uint32_t step, uint64_t index);
+
+/* Two independent doubles, uniform in [0, 1), with 53 and 53 random bits. */
+void random_pair(uint64_t seed, uint32_t stream, uint32_t step, uint64_t index, double out[2]);
+
+#endif

@@ -1,0 +1,88 @@
+/* libvenation: grows leaf veins and turns them into leaves.
+ *
+ *     GError *error = NULL;
+ *     VenParams *params = ven_params_load("params/poplar.ini", &error);
+ *     VenLeaf *leaf = ven_grow(params, 1, NULL, &error);
+ *     ven_write(leaf, "out/poplar", "poplar", &error);
+ *
+ * Result = f(parameters, seed): any thread count, compiler and machine gives the same bytes. There is no global state; handles may be
+ * used from any thread, each by one thread at a time. Lengths are in vein segments (one segment is 1); the leaf base is the origin
+ * and the tip lies along +y. Functions that can fail return NULL or FALSE and set a GError. */
+#ifndef VENATION_H
+#define VENATION_H
+
+#include <glib.h>
+#include <stdint.h>
+
+G_BEGIN_DECLS
+
+#ifndef VEN_API
+#define VEN_API __attribute__((visibility("default")))
+#endif
+
+typedef struct VenParams VenParams; /* values of every parameter */
+typedef struct VenLeaf VenLeaf;     /* a grown leaf: network, outline, record */
+
+VEN_API const char *ven_version(void);
+
+/* All defaults. */
+VEN_API VenParams *ven_params_new(void);
+
+/* Reads a parameter file over the defaults; the error names file, line, key, the value found and the values allowed. */
+VEN_API VenParams *ven_params_load(const char *path, GError **error);
+
+/* Sets one parameter, as --set does: key "section.key", value as in a file. */
+VEN_API gboolean ven_params_set(VenParams *params, const char *key, const char *value, GError **error);
+
+/* The value of a parameter as text; free it with g_free. NULL for an unknown key. */
+VEN_API char *ven_params_get(const VenParams *params, const char *key);
+
+/* The whole set as the text of a parameter file; free it with g_free. */
+VEN_API char *ven_params_text(const VenParams *params);
+VEN_API void ven_params_free(VenParams *params);
+
+/* What a run reports while it goes on, and how it is told to stop. */
+typedef struct {
+    uint32_t step, nodes, sources;
+    double length;       /* current leaf length, segments */
+    double done;         /* rough part of the run that is done, 0 … 1 */
+    const VenLeaf *leaf; /* the state at this step when `snapshot_every` divides it and at the end, else NULL; valid during the call */
+} VenProgress;
+
+typedef struct {
+    unsigned threads;        /* 0: all processors */
+    uint32_t snapshot_every; /* 0: never */
+    gboolean (*progress)(const VenProgress *progress, gpointer user); /* called at every step when not NULL; FALSE stops the run, which then fails with G_IO_ERROR_CANCELLED */
+    gpointer user;
+} VenOptions;
+
+/* Grows a leaf. NULL with an error for parameters that contradict each other, or a cancelled run. `options` may be NULL. */
+VEN_API VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *options, GError **error);
+VEN_API void ven_leaf_free(VenLeaf *leaf);
+
+/* Writes what the parameters ask for (maps, SVG, network) and the run record into the folder `dir`, as `<name>_<map>.png` and so on. */
+VEN_API gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *name, GError **error);
+
+/* The run record as JSON; free it with g_free. */
+VEN_API char *ven_leaf_record(const VenLeaf *leaf);
+
+/* The network. Arrays belong to the leaf. */
+VEN_API uint32_t ven_leaf_nodes(const VenLeaf *leaf);
+VEN_API uint32_t ven_leaf_edges(const VenLeaf *leaf);
+VEN_API void ven_leaf_node(const VenLeaf *leaf, uint32_t node, double *x, double *y, uint32_t *birth);
+
+typedef struct {
+    uint32_t tail, head; /* nodes, the tail nearer the base */
+    uint32_t birth;      /* step */
+    uint32_t vein;       /* vein it is part of */
+    uint8_t order;       /* 1 primary, 2 secondary, … by hierarchy (Hong 2005) */
+    uint8_t rank;        /* the same by width (Hickey 1979) */
+    gboolean anastomosis;
+    double width;        /* segments */
+} VenEdge;
+
+VEN_API void ven_leaf_edge(const VenLeaf *leaf, uint32_t edge, VenEdge *out);
+
+G_END_DECLS
+
+#endif
