@@ -63,6 +63,10 @@ VEN_API void ven_leaf_free(VenLeaf *leaf);
 /* Writes what the parameters ask for (maps, SVG, network) and the run record into the folder `dir`, as `<name>_<map>.png` and so on. */
 VEN_API gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *name, GError **error);
 
+/* Writes one picture of a leaf that may still be growing: <dir>/frames/<name>_<step>.svg, or with `maps` the maps the parameters ask
+ * for. The step has six digits or more. */
+VEN_API gboolean ven_write_frame(const VenLeaf *leaf, const char *dir, const char *name, gboolean maps, GError **error);
+
 /* The run record as JSON; free it with g_free. */
 VEN_API char *ven_leaf_record(const VenLeaf *leaf);
 

@@ -26,9 +26,9 @@ static double scale2(double x, int e)
 double dmath_log2(double x)
 {
     if (!(x > 0.0))
-        return x == 0.0 ? -INFINITY : NAN;
-    if (!(x < INFINITY))
-        return INFINITY;
+        return x == 0.0 ? -HUGE_VAL : (double)NAN;
+    if (!(x < HUGE_VAL))
+        return HUGE_VAL;
     int e = 0;
     if (x < 0x1p-1000) {
         x *= 0x1p200;
@@ -56,7 +56,7 @@ double dmath_exp2(double x)
     if (x != x)
         return x;
     if (x >= 1024.0)
-        return INFINITY;
+        return HUGE_VAL;
     if (x < -1074.0)
         return 0.0;
     double n = floor(x + 0.5);
@@ -79,6 +79,6 @@ double dmath_pow(double x, double y)
     if (y == 0.5)
         return sqrt(x);
     if (x == 0.0)
-        return y > 0.0 ? 0.0 : INFINITY;
+        return y > 0.0 ? 0.0 : HUGE_VAL;
     return dmath_exp2(y * dmath_log2(x));
 }

@@ -1,5 +1,6 @@
 /* The margin of a leaf blade as one closed polygon in leaf coordinates: base (petiole attachment) at (0,0), tip at
- * (0,1), so a length of 1 is the leaf's length, base to tip. Counter-clockwise, no repeated vertices, never self-crossing. */
+ * (0,1), so a length of 1 is the leaf's length, base to tip. Counter-clockwise, no repeated vertices, never
+ * self-crossing. */
 #ifndef GEOM_OUTLINE_H
 #define GEOM_OUTLINE_H
 
@@ -29,7 +30,7 @@ typedef struct {
     const char *where;      /* names the origin in error messages, e.g. "params/poplar.ini, [outline] path" */
     bool has_base, has_tip; /* given by hand, in the units of path or file; else by rule, see outline_new */
     Vec2 base, tip;
-    bool mirror;            /* path is the right half from base to tip: reflect it about the axis */
+    bool mirror;            /* path is the right half from base to tip, its last point: reflect it about the axis */
     double flatness;        /* largest distance of a flattened curve from the polygon, leaf lengths */
     const OutlineWave *waves;
     uint32_t n_waves;
@@ -39,12 +40,13 @@ typedef struct {
 
 OutlineDef outline_def_default(void);
 
-/* Reads the path (or the file: the element with id "outline", else the largest closed path; circles or ellipses with ids
- * "base" and "tip" mark those points), flattens the curves, adds the teeth and moves the result to leaf coordinates.
- * Without marks the base is the first point of the path and the tip the vertex farthest from it. The base may lie on
- * the margin or inside the blade (peltate); it is snapped to the margin when nearer than 1e-6. Several subpaths are an
- * error. Returns NULL and sets `error`, which names `where`, for a shape that is empty, self-crossing or has base = tip.
- * Uses + − × ÷ √ only, so the polygon has the same bits everywhere. O(n log n) expected. */
+/* Reads the path (or the file: the element with id "outline", else the largest closed path; circles or ellipses with
+ * ids "base" and "tip" mark those points), flattens the curves, adds the teeth and moves the result to leaf
+ * coordinates. Without marks the base is the first point of the path and the tip the vertex farthest from it (of a half
+ * that is mirrored, its last point). The base may lie on the margin or inside the blade (peltate); nearer to the margin
+ * than `flatness` or 1e-6 it is on it and becomes vertex 0, and so does a tip there become a vertex. Several subpaths
+ * are an error. Returns NULL and sets `error`, which names `where`, for a shape that is empty, self-crossing or has
+ * base = tip. Uses + − × ÷ √ only, so the polygon has the same bits everywhere. O(n log n) expected. */
 Polygon *outline_new(const OutlineDef *def, GError **error);
 
 #endif

@@ -13,21 +13,26 @@ struct Polygon {
     /* private: horizontal slabs, each listing the edges that reach into it */
     uint32_t n_slabs;
     uint32_t *slab_start, *slab_edge;
+    double slab_scale; /* slabs per unit of y */
+    /* private: a coarse grid over the box; a cell is wholly inside, wholly outside, or the slabs must be asked */
+    uint8_t *mask;
+    Vec2 mask_corner, mask_scale;
 };
 
-/* Copies n >= 3 vertices; turns them counter-clockwise. Never fails: whether it is simple is the caller's to know
- * (polygon_crossing). */
+/* Copies n >= 3 finite vertices; turns them counter-clockwise, the first one staying first. Never fails: whether it is
+ * simple is the caller's to know (polygon_crossing). O(n) for outlines. */
 Polygon *polygon_new(const Vec2 *v, uint32_t n);
 void polygon_free(Polygon *p);
 
 /* Even-odd test, consistent on the boundary: of two polygons sharing an edge a point lies in exactly one.
- * O(edges in one slab), about n / n_slabs. */
+ * One look-up away from the boundary, else a few edges. */
 bool polygon_contains(const Polygon *p, Vec2 q);
 
 /* Signed distance to the boundary, positive inside. O(n). */
 double polygon_depth(const Polygon *p, Vec2 q);
 
-/* Finds two edges i < j that touch or cross other than at a shared vertex. O(n log n) expected. */
+/* Finds two edges i < j (edge i runs from vertex i to the next) that touch or cross other than at a shared vertex.
+ * O(n log n) expected. */
 bool polygon_crossing(const Polygon *p, uint32_t *i, uint32_t *j);
 
 /* Centroid of the area. */

@@ -26,7 +26,7 @@ static inline double vec_norm2(Vec2 a) { return a.x * a.x + a.y * a.y; }
 static inline double vec_dist2(Vec2 a, Vec2 b) { return vec_norm2(vec_sub(a, b)); }
 static inline double vec_dist(Vec2 a, Vec2 b) { return sqrt(vec_dist2(a, b)); }
 
-static inline Box2 box_empty(void) { return (Box2){INFINITY, INFINITY, -INFINITY, -INFINITY}; }
+static inline Box2 box_empty(void) { return (Box2){HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}; }
 static inline bool box_is_empty(Box2 b) { return !(b.x0 <= b.x1 && b.y0 <= b.y1); }
 
 static inline Box2 box_add(Box2 b, Vec2 p)

@@ -29,6 +29,9 @@ const ParamInfo *param_info(ParamId id);
 /* Id of "section.key", or -1. */
 int param_find(const char *dotted);
 
+/* What the table allows, in words: "a number from 0 to 1e6 (segments)". Free it. */
+char *param_allowed(ParamId id);
+
 typedef enum {
     PARAM_ERROR_FILE,    /* the file can't be read or is no key file */
     PARAM_ERROR_UNKNOWN, /* no such section or key */
@@ -46,6 +49,9 @@ void params_free(Params *p);
 /* Reads a key file over the defaults. On error returns NULL; the message names file, line, section and key, the value
  * found and the values allowed, and for an unknown name the nearest known one. */
 Params *params_load(const char *path, GError **error);
+
+/* The same from `length` bytes of text; `path` names them in messages and its folder is where FILE values start. */
+Params *params_parse(const char *text, gsize length, const char *path, GError **error);
 
 /* Sets one parameter from "section.key=value"; FILE values given so are relative to the working folder. */
 gboolean params_override(Params *p, const char *assignment, GError **error);

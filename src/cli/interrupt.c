@@ -1,0 +1,111 @@
+#include "cli/interrupt.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+
+typedef enum { POLITE, URGENT, HELD } Mood;
+
+struct Interrupt {
+    pthread_t thread;
+    GMutex lock;
+    Mood mood;
+    int came;
+    gboolean quit;
+    sigset_t signals;
+    InterruptCleanup cleanup;
+    gpointer user;
+};
+
+/* Holding the lock, which is never given back: nobody else goes on. */
+static G_GNUC_NORETURN void end(Interrupt *in)
+{
+    in->cleanup(in->user);
+    _exit(EXIT_SIGNAL + in->came);
+}
+
+static void *wait_for_signals(void *user)
+{
+    Interrupt *in = user;
+    for (;;) {
+        int signal_number;
+        if (sigwait(&in->signals, &signal_number) != 0)
+            continue;
+        g_mutex_lock(&in->lock);
+        gboolean quit = in->quit, first = !in->came;
+        if (signal_number != SIGURG && first)
+            in->came = signal_number;
+        if (signal_number != SIGURG && (in->mood == URGENT || (in->mood == POLITE && !first)))
+            end(in);
+        g_mutex_unlock(&in->lock);
+        if (quit)
+            return NULL;
+    }
+}
+
+Interrupt *interrupt_new(InterruptCleanup cleanup, gpointer user)
+{
+    static const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
+    Interrupt *in = g_new0(Interrupt, 1);
+    g_mutex_init(&in->lock);
+    in->cleanup = cleanup;
+    in->user = user;
+    sigemptyset(&in->signals);
+    sigaddset(&in->signals, SIGURG); /* does nothing by default: wakes the thread for interrupt_free */
+    for (gsize i = 0; i < G_N_ELEMENTS(wanted); i++) {
+        struct sigaction old;
+        if (sigaction(wanted[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+            sigaddset(&in->signals, wanted[i]);
+    }
+    pthread_sigmask(SIG_BLOCK, &in->signals, NULL);
+    if (pthread_create(&in->thread, NULL, wait_for_signals, in) != 0)
+        g_error("can't start a thread"); /* as g_thread_new does */
+    return in;
+}
+
+void interrupt_free(Interrupt *in)
+{
+    if (!in)
+        return;
+    g_mutex_lock(&in->lock);
+    in->quit = TRUE;
+    g_mutex_unlock(&in->lock);
+    pthread_kill(in->thread, SIGURG);
+    pthread_join(in->thread, NULL);
+    pthread_sigmask(SIG_UNBLOCK, &in->signals, NULL);
+    g_mutex_clear(&in->lock);
+    g_free(in);
+}
+
+int interrupt_signal(Interrupt *in)
+{
+    g_mutex_lock(&in->lock);
+    int came = in->came;
+    g_mutex_unlock(&in->lock);
+    return came;
+}
+
+void interrupt_urgent(Interrupt *in)
+{
+    g_mutex_lock(&in->lock);
+    in->mood = URGENT;
+    if (in->came)
+        end(in);
+    g_mutex_unlock(&in->lock);
+}
+
+void interrupt_hold(Interrupt *in)
+{
+    g_mutex_lock(&in->lock);
+    in->mood = HELD;
+    g_mutex_unlock(&in->lock);
+}
+
+void interrupt_polite(Interrupt *in)
+{
+    g_mutex_lock(&in->lock);
+    in->mood = POLITE;
+    g_mutex_unlock(&in->lock);
+}

@@ -1,0 +1,43 @@
+/* Index of the sources' zones: which sources may a set of new nodes concern? A grid over the sources' places with a pyramid of
+ * bounding boxes of their zones above it. The same grid answers "is another source nearer than b_s?". */
+#ifndef GEOM_ZONES_H
+#define GEOM_ZONES_H
+
+#include "geom/boxtree.h"
+
+typedef struct {
+    float x0, y0, x1, y1; /* rounded outward */
+} ZoneBox;
+
+typedef struct {
+    Box2 field;
+    double cell;
+    uint32_t levels; /* level 0 is the grid of cells, each next one halves it, the last is one box */
+    uint32_t nx[16], ny[16];
+    ZoneBox *box[16];
+    uint32_t *head; /* [nx[0] * ny[0]] first item of a cell */
+    uint32_t *next; /* [cap] */
+    ZoneBox *zone;  /* [cap] */
+    uint32_t n, cap;
+} Zones;
+
+/* An index for items within `field`; cells of about the size `cell` (made larger when there would be too many). */
+void zones_init(Zones *z, Box2 field, double cell);
+void zones_clear(Zones *z);
+
+/* Empties the index, keeping its memory. O(cells). */
+void zones_reset(Zones *z);
+
+/* Adds item number z->n (items are numbered as they are added) at place p. The boxes above it are stale until zones_raise. */
+void zones_add(Zones *z, Vec2 p, Box2 zone);
+
+/* Recomputes all boxes from the items' zones. O(items + cells). */
+void zones_raise(Zones *z);
+
+/* Calls hit(item, user) for every item whose zone may hold one of the points, in a fixed order. */
+void zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, void (*hit)(uint32_t item, void *user), void *user);
+
+/* Whether an item lies nearer to p than r; place[i] is where item i lies. */
+bool zones_any_within(const Zones *z, const Vec2 *place, Vec2 p, double r);
+
+#endif

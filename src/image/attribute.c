@@ -1,0 +1,81 @@
+/* Maps of data and labels: what is where, no shading. */
+#include <glib.h>
+#include <string.h>
+
+#include "image/painter.h"
+
+typedef struct {
+    const Painter *p;
+    MapId id;
+    Plane *plane;
+} Attribute;
+
+static double value_at(const Attribute *a, uint32_t owner, uint32_t x, uint32_t y)
+{
+    const Stroke *s = &a->p->strokes->v[owner];
+    if (a->id == MAP_VEIN_ORDER)
+        return s->order;
+    if (a->id == MAP_VEIN_ID)
+        return 1.0 + s->vein;
+    double t;
+    capsule_distance(&s->shape, vec2(x + 0.5, y + 0.5), &t);
+    if (a->id == MAP_VEIN_WIDTH)
+        return 2.0 * capsule_radius(&s->shape, t) / a->p->frame.scale;
+    return floor((double)s->birth0 + (double)(s->birth1 - s->birth0) * t + 0.5);
+}
+
+static void owner_row(uint32_t y, void *user)
+{
+    const Attribute *a = user;
+    const uint32_t *owner = a->p->owner + (gsize)y * a->p->width;
+    float *out = a->plane->px + (gsize)y * a->p->width;
+    for (uint32_t x = 0; x < a->p->width; x++)
+        if ((owner[x] & OWNER_BESIDE) == 0)
+            out[x] = (float)value_at(a, owner[x], x, y);
+}
+
+static void distance_row(uint32_t y, void *user)
+{
+    const Attribute *a = user;
+    const float *away = a->p->away + (gsize)y * a->p->width;
+    float *out = a->plane->px + (gsize)y * a->p->width;
+    for (uint32_t x = 0; x < a->p->width; x++)
+        out[x] = (float)((double)MAX(away[x], 0.0f) / a->p->frame.scale);
+}
+
+/* What white stands for; depends on the network alone, so frames of one run compare. */
+static double white(const Painter *p, MapId id)
+{
+    const Network *net = p->net;
+    double top = 1.0;
+    if (id == MAP_VEIN_WIDTH)
+        top = p->widest;
+    else if (id == MAP_AGE)
+        top = net->n_steps;
+    else if (id == MAP_DISTANCE && net->margin != NULL)
+        top = painter_round_up(4.0 * p->spacing);
+    return top > 0.0 ? top : 1.0;
+}
+
+Plane *paint_attribute(Painter *p, MapId id)
+{
+    Plane *plane = painter_plane(p, id);
+    gsize n = (gsize)p->width * p->rows;
+    Attribute a = {p, id, plane};
+    if (id == MAP_OPACITY) {
+        memcpy(plane->px, painter_blade(p), n * sizeof(float));
+    } else if (id == MAP_VEIN_MASK) {
+        memcpy(plane->px, painter_cover(p), n * sizeof(float));
+    } else if (id == MAP_DISTANCE) {
+        plane->high = white(p, id);
+        painter_away(p);
+        if (p->net->n_edges > 0)
+            painter_rows(p, distance_row, &a);
+    } else {
+        if (plane->kind == PLANE_DATA)
+            plane->high = white(p, id);
+        painter_owner(p);
+        painter_rows(p, owner_row, &a);
+    }
+    return plane;
+}

@@ -1,0 +1,36 @@
+/* Which strokes reach which tile of an image. */
+#ifndef IMAGE_BINS_H
+#define IMAGE_BINS_H
+
+#include "image/capsule.h"
+
+enum { TILE = 32 }; /* pixels */
+
+typedef struct {
+    uint32_t width, height; /* pixels */
+    uint32_t nx, ny;        /* tiles */
+    uint32_t *start;        /* [nx * ny + 1] into item */
+    uint32_t *item;         /* indices, ascending within a tile */
+} Bins;
+
+/* shape(i, user) for i < n gives the area in which stroke i matters. */
+void bins_init(Bins *b, uint32_t width, uint32_t height, uint32_t n, Capsule (*shape)(uint32_t i, const void *user), const void *user);
+void bins_clear(Bins *b);
+
+/* Pixel bounds of a tile. */
+typedef struct {
+    uint32_t x0, y0, x1, y1;
+} TileBox;
+
+TileBox bins_tile(const Bins *b, uint32_t tile);
+
+/* Pixels [*first, *last) of lo … hi (pixel units, the pixel i covers i … i + 1) that lie in [x0, x1): those touched, wholly inside, and
+ * those whose centres are inside. */
+void pixels_touched(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
+void pixels_inside(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
+void pixels_centred(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
+
+/* Pixel rows of [y0, y1) that the stroke touches. */
+void pixel_rows(const Capsule *k, uint32_t y0, uint32_t y1, uint32_t *first, uint32_t *last);
+
+#endif

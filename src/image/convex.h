@@ -1,0 +1,54 @@
+/* Exact area of the union of strokes within one pixel. The parts of strokes in the pixel are convex polygons; a stroke's
+ * area is what is left of it after cutting away the strokes before it. Only half-plane cuts are made, so touching
+ * and coincident edges need no special cases. */
+#ifndef IMAGE_CONVEX_H
+#define IMAGE_CONVEX_H
+
+#include "image/capsule.h"
+
+/* Unit vectors, CIRCLE of them, evenly around the circle. */
+enum { CIRCLE = 4096 };
+
+typedef struct {
+    Vec2 dir[CIRCLE];
+} Circle;
+
+Circle *circle_new(void);
+
+/* Convex polygons, one after the other. */
+typedef struct {
+    Vec2 *v;
+    uint32_t *end; /* of each polygon in v */
+    uint32_t n_v, cap_v, n, cap;
+} Rings;
+
+typedef struct {
+    const Circle *circle;
+    Rings part;       /* the strokes within the pixel */
+    Rings rest, next; /* what is left of one of them */
+    Rings ping, pong; /* polygons being cut */
+    uint32_t *rank;   /* parts by size */
+    double *size;
+    uint32_t cap;
+} Union;
+
+void union_init(Union *u, const Circle *circle);
+void union_clear(Union *u);
+
+/* Begins a pixel. */
+void union_reset(Union *u);
+
+/* Half-planes through the end discs' centres across the axis that a stroke may be cut with. */
+typedef enum { CUT_NONE = 0, CUT_A = 1, CUT_B = 2 } StrokeCut;
+
+/* Adds the part of a stroke in the pixel whose top left corner is `corner`. */
+void union_add(Union *u, const Capsule *k, StrokeCut cut, Vec2 corner);
+
+/* Adds the wedge between two strokes that are both cut at their joint: the part of the disc that lies beyond the first, which runs along
+ * d0, and before the second, which runs along d1. */
+void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec2 corner);
+
+/* Area covered, 0 … 1. About 1e-5 exact. */
+double union_area(Union *u);
+
+#endif

@@ -1,0 +1,177 @@
+#include "image/paint.h"
+
+#include <glib.h>
+#include <string.h>
+
+#include "geom/dmath.h"
+#include "geom/parallel.h"
+#include "image/painter.h"
+
+static const MapInfo infos[MAP_COUNT] = {
+    [MAP_BASE_COLOR] = {"base_color", PLANE_COLOUR, 3, "", "Colour of the sunny (adaxial) side"},
+    [MAP_ABAXIAL_BASE_COLOR] = {"abaxial_base_color", PLANE_COLOUR, 3, "", "Colour of the shadow (abaxial) side"},
+    [MAP_OPACITY] = {"opacity", PLANE_DATA, 1, "", "Exact part of the pixel that the blade covers"},
+    [MAP_HEIGHT] = {"height", PLANE_DATA, 1, "segments", "Surface of the abaxial side: veins raised, blade sunk between them"},
+    [MAP_NORMAL_GL] = {"normal_gl", PLANE_DATA, 3, "", "Normals of the abaxial side from the height map, x right, y up, z to the viewer"},
+    [MAP_ADAXIAL_NORMAL_GL] = {"adaxial_normal_gl", PLANE_DATA, 3, "",
+                               "Normals of the adaxial side: larger veins slightly sunk, blade arched between them"},
+    [MAP_ROUGHNESS] = {"roughness", PLANE_DATA, 1, "", "Roughness of the surface, 0 mirror to 1 dull"},
+    [MAP_AO] = {"ao", PLANE_DATA, 1, "", "Ambient occlusion of the abaxial side: dark in the creases beside veins"},
+    [MAP_TRANSLUCENCY] = {"translucency", PLANE_DATA, 1, "", "Part of the light that passes through: much in the blade, little in thick veins"},
+    [MAP_THICKNESS] = {"thickness", PLANE_DATA, 1, "segments", "Thickness of blade and vein, thinning out at the margin"},
+    [MAP_VEIN_MASK] = {"vein_mask", PLANE_DATA, 1, "", "Exact part of the pixel that veins cover"},
+    [MAP_VEIN_ORDER] = {"vein_order", PLANE_LABEL, 1, "", "Order of the vein at the pixel, 1 primary; 0 none"},
+    [MAP_VEIN_ID] = {"vein_id", PLANE_LABEL, 1, "", "Number of the vein at the pixel, from 1; 0 none"},
+    [MAP_VEIN_WIDTH] = {"vein_width", PLANE_DATA, 1, "segments", "Width of the vein at the pixel; 0 none"},
+    [MAP_DISTANCE] = {"distance", PLANE_DATA, 1, "segments", "Distance to the nearest vein inside the blade; 0 in veins"},
+    [MAP_AGE] = {"age", PLANE_DATA, 1, "steps", "Step at which the vein at the pixel was born; 0 none"},
+};
+
+const MapInfo *paint_map_info(MapId id) { return &infos[id]; }
+
+int paint_map_find(const char *name)
+{
+    for (int i = 0; i < MAP_COUNT; i++)
+        if (strcmp(infos[i].name, name) == 0)
+            return i;
+    return -1;
+}
+
+void paint_colour(uint32_t srgb, float out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        double s = (srgb >> (16 - 8 * i) & 255u) / 255.0;
+        out[i] = (float)(s <= 0.04045 ? s / 12.92 : dmath_pow((s + 0.055) / 1.055, 2.4));
+    }
+}
+
+PaintStyle paint_style_default(void)
+{
+    PaintStyle s = {.variation = 0.35, .relief = 0.6, .gloss = 0.5, .thickness = 1.5, .padding = 16};
+    paint_colour(0x4f7a2c, s.lamina);
+    paint_colour(0xc3cf86, s.vein);
+    paint_colour(0x86a06b, s.abaxial_lamina);
+    paint_colour(0xc9cfa0, s.abaxial_vein);
+    paint_colour(0x5f7f33, s.margin);
+    return s;
+}
+
+/* What the leaf is like as a whole. */
+static void survey(Painter *p)
+{
+    const Network *net = p->net;
+    double length = 0.0;
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        p->widest = MAX(p->widest, net->width[e]);
+        length += vec_dist(net->node[net->tail[e]], net->node[net->head[e]]);
+    }
+    double area = net->margin != NULL ? net->margin->area : 0.0;
+    p->spacing = length > 0.0 && area > 0.0 ? area / length : 1.0;
+}
+
+Painter *painter_new(const Network *net, const Frame *frame, const PaintStyle *style)
+{
+    Painter *p = g_new0(Painter, 1);
+    p->net = net;
+    p->frame = *frame;
+    p->style = *style;
+    p->width = frame->width;
+    p->rows = frame->height;
+    p->circle = circle_new();
+    survey(p);
+    return p;
+}
+
+void painter_free(Painter *p)
+{
+    if (p == NULL)
+        return;
+    strokes_free(p->strokes);
+    bins_clear(&p->bins);
+    g_free(p->circle);
+    g_free(p->cover);
+    g_free(p->blade);
+    g_free(p->owner);
+    g_free(p->away);
+    g_free(p->inset);
+    g_free(p->vein_height);
+    g_free(p->halo);
+    g_free(p->arch);
+    g_free(p->height);
+    g_free(p->source);
+    g_free(p);
+}
+
+/* A stroke with room for the pixels beside it. */
+static Capsule stroke_area(uint32_t i, const void *user)
+{
+    const Capsule *k = &((const Strokes *)user)->v[i].shape;
+    return capsule_new(k->a, k->ra + 0.75, k->b, k->rb + 0.75);
+}
+
+const Strokes *painter_strokes(Painter *p)
+{
+    if (p->strokes == NULL) {
+        p->strokes = strokes_new(p->net, &p->frame, (StrokeTolerance){0.02, 0.0});
+        bins_init(&p->bins, p->width, p->rows, p->strokes->n, stroke_area, p->strokes);
+    }
+    return p->strokes;
+}
+
+Plane *painter_plane(const Painter *p, MapId id)
+{
+    const MapInfo *info = &infos[id];
+    Plane *plane = plane_new(p->width, p->rows, info->channels, info->kind);
+    plane->unit = info->unit;
+    return plane;
+}
+
+typedef struct {
+    void (*fn)(uint32_t y, void *user);
+    void *user;
+} RowLoop;
+
+static void run_rows(uint32_t first, uint32_t last, void *user)
+{
+    const RowLoop *loop = user;
+    for (uint32_t y = first; y < last; y++)
+        loop->fn(y, loop->user);
+}
+
+void painter_rows(const Painter *p, void (*fn)(uint32_t y, void *user), void *user)
+{
+    RowLoop loop = {fn, user};
+    parallel_for(p->style.threads, p->rows, 16, run_rows, &loop);
+}
+
+Plane *painter_paint(Painter *p, MapId id)
+{
+    switch (id) {
+    case MAP_OPACITY:
+    case MAP_VEIN_MASK:
+    case MAP_VEIN_ORDER:
+    case MAP_VEIN_ID:
+    case MAP_VEIN_WIDTH:
+    case MAP_DISTANCE:
+    case MAP_AGE:
+        return paint_attribute(p, id);
+    case MAP_HEIGHT:
+    case MAP_NORMAL_GL:
+    case MAP_ADAXIAL_NORMAL_GL:
+    case MAP_AO:
+    case MAP_THICKNESS:
+        return paint_surface(p, id);
+    default:
+        return paint_look(p, id);
+    }
+}
+
+Plane *painter_veins(Painter *p)
+{
+    Plane *plane = plane_new(p->width, p->rows, 1, PLANE_DATA);
+    const float *cover = painter_cover(p);
+    gsize n = (gsize)p->width * p->rows;
+    for (gsize i = 0; i < n; i++)
+        plane->px[i] = 1.0f - cover[i];
+    return plane;
+}

@@ -1,0 +1,271 @@
+#include "image/stroke.h"
+
+#include <glib.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A point of a vein's centre line: pixels. `birth` is that of the edge that leaves it. */
+typedef struct {
+    Vec2 p;
+    double r, birth;
+} Knot;
+
+typedef struct {
+    GArray *knot; /* nodes of one run */
+    GArray *line; /* the smooth curve through them, as a polyline */
+    GArray *kept; /* indices into line */
+    GArray *stack;
+    StrokeTolerance tol;
+    Strokes *out;
+} Builder;
+
+enum { MAX_CUTS = 16 }; /* pieces of the curve between two nodes */
+
+/* Turning shortens a chord; a vein may lose this part of its length, hence of its area, by simplification. */
+static const double length_loss = 0.0005;
+
+static Knot *knots(GArray *a) { return (Knot *)(void *)a->data; }
+
+/* Edges by vein, and along each vein from its origin on: tails grow along a vein. */
+static uint32_t *edges_by_vein(const Network *net)
+{
+    uint32_t n = net->n_edges, *by_tail = g_new(uint32_t, n + 1), *by_vein = g_new(uint32_t, n + 1);
+    uint32_t *count = g_new0(uint32_t, MAX(net->n_nodes, net->n_veins) + 2);
+    for (uint32_t e = 0; e < n; e++)
+        count[net->tail[e] + 1]++;
+    for (uint32_t i = 0; i < net->n_nodes; i++)
+        count[i + 1] += count[i];
+    for (uint32_t e = 0; e < n; e++)
+        by_tail[count[net->tail[e]]++] = e;
+    memset(count, 0, (net->n_veins + 2) * sizeof *count);
+    for (uint32_t e = 0; e < n; e++)
+        count[net->vein[e] + 1]++;
+    for (uint32_t i = 0; i < net->n_veins; i++)
+        count[i + 1] += count[i];
+    for (uint32_t i = 0; i < n; i++)
+        by_vein[count[net->vein[by_tail[i]]]++] = by_tail[i];
+    g_free(by_tail);
+    g_free(count);
+    return by_vein;
+}
+
+static Vec2 to_image(const Frame *f, Vec2 p) { return vec2((p.x - f->corner.x) * f->scale, (f->corner.y - p.y) * f->scale); }
+
+/* Nodes of the run edge[0 … n-1]. Widths at inner nodes are the mean of the edges', so that veins taper without steps. */
+static void collect_knots(Builder *b, const Network *net, const Frame *frame, const uint32_t *edge, uint32_t n)
+{
+    g_array_set_size(b->knot, 0);
+    for (uint32_t i = 0; i <= n; i++) {
+        uint32_t in = edge[i > 0 ? i - 1 : 0], out = edge[i < n ? i : n - 1];
+        uint32_t node = i < n ? net->tail[out] : net->head[in];
+        Knot k = {to_image(frame, net->node[node]), 0.25 * frame->scale * (net->width[in] + net->width[out]), net->birth[out]};
+        g_array_append_val(b->knot, k);
+    }
+}
+
+/* Murray's law makes a vein narrower at once where a branch leaves; in a leaf it takes about a vein's width. So radii are averaged along
+ * the vein over `blend` radii to either side, less near its ends. sum[i] is the integral of the radius up to knot i, at[i] the arc length. */
+static double integral(const double *at, const double *sum, const Knot *k, uint32_t n, double s)
+{
+    uint32_t lo = 0, hi = n - 1;
+    while (hi - lo > 1) {
+        uint32_t mid = lo + (hi - lo) / 2;
+        if (at[mid] <= s)
+            lo = mid;
+        else
+            hi = mid;
+    }
+    double d = s - at[lo], step = at[hi] - at[lo], slope = step > 0.0 ? (k[hi].r - k[lo].r) / step : 0.0;
+    return sum[lo] + d * (k[lo].r + 0.5 * d * slope);
+}
+
+static void blend_radii(Builder *b)
+{
+    static const double blend = 2.5;
+    uint32_t n = b->knot->len;
+    Knot *k = knots(b->knot);
+    double *at = g_new0(double, 3 * n), *sum = at + n, *mean = sum + n;
+    for (uint32_t i = 1; i < n; i++) {
+        at[i] = at[i - 1] + vec_dist(k[i - 1].p, k[i].p);
+        sum[i] = sum[i - 1] + 0.5 * (at[i] - at[i - 1]) * (k[i - 1].r + k[i].r);
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        double w = MIN(blend * k[i].r, MIN(at[i] - at[0], at[n - 1] - at[i]));
+        mean[i] = w > 0.0 ? (integral(at, sum, k, n, at[i] + w) - integral(at, sum, k, n, at[i] - w)) / (2.0 * w) : k[i].r;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        k[i].r = mean[i];
+    g_free(at);
+}
+
+/* Slope of the curve at knot i against arc length along the chords; nodes may be unevenly spaced. */
+static Vec2 tangent(const Knot *k, uint32_t i, uint32_t last)
+{
+    uint32_t lo = i > 0 ? i - 1 : 0, hi = i < last ? i + 1 : last;
+    double d0 = vec_dist(k[lo].p, k[i].p), d1 = vec_dist(k[i].p, k[hi].p);
+    Vec2 v0 = d0 > 0.0 ? vec_scale(vec_sub(k[i].p, k[lo].p), 1.0 / d0) : vec2(0.0, 0.0);
+    Vec2 v1 = d1 > 0.0 ? vec_scale(vec_sub(k[hi].p, k[i].p), 1.0 / d1) : vec2(0.0, 0.0);
+    if (d0 == 0.0)
+        return v1;
+    if (d1 == 0.0)
+        return v0;
+    return vec_scale(vec_add(vec_scale(v0, d1), vec_scale(v1, d0)), 1.0 / (d0 + d1));
+}
+
+static Vec2 hermite(Vec2 p, Vec2 m, Vec2 q, Vec2 n, double t)
+{
+    double u = 1.0 - t, h0 = u * u * (1.0 + 2.0 * t), h1 = t * t * (3.0 - 2.0 * t);
+    double g0 = u * u * t, g1 = -t * t * u;
+    return vec2(h0 * p.x + g0 * m.x + h1 * q.x + g1 * n.x, h0 * p.y + g0 * m.y + h1 * q.y + g1 * n.y);
+}
+
+/* Pieces that keep the polyline within half the tolerance of the curve: its deviation is about |tangent - chord| / 4n². */
+static uint32_t cuts(const Builder *b, Vec2 chord, Vec2 m0, Vec2 m1)
+{
+    double bend = MAX(vec_dist(m0, chord), vec_dist(m1, chord)), allowed = 2.0 * b->tol.position;
+    uint32_t n = 1;
+    while (n < MAX_CUTS && bend > allowed * n * n)
+        n++;
+    return n;
+}
+
+static void smooth(Builder *b)
+{
+    const Knot *k = knots(b->knot);
+    uint32_t last = b->knot->len - 1;
+    g_array_set_size(b->line, 0);
+    for (uint32_t i = 0; i < last; i++) {
+        double d = vec_dist(k[i].p, k[i + 1].p);
+        Vec2 m0 = vec_scale(tangent(k, i, last), d), m1 = vec_scale(tangent(k, i + 1, last), d);
+        uint32_t n = cuts(b, vec_sub(k[i + 1].p, k[i].p), m0, m1);
+        for (uint32_t j = 0; j < n; j++) {
+            double t = (double)j / n;
+            Knot q = {hermite(k[i].p, m0, k[i + 1].p, m1, t), k[i].r + (k[i + 1].r - k[i].r) * t, k[i].birth};
+            g_array_append_val(b->line, q);
+        }
+    }
+    g_array_append_val(b->line, k[last]);
+}
+
+/* The point between i and j that a straight piece would miss worst, when it misses one by more than the tolerance; else i. */
+static uint32_t worst(const Builder *b, uint32_t i, uint32_t j)
+{
+    const Knot *k = knots(b->line);
+    Vec2 axis = vec_sub(k[j].p, k[i].p);
+    double chord2 = vec_norm2(axis), chord = sqrt(chord2), length = 0.0, top = 0.0;
+    uint32_t at = i;
+    for (uint32_t m = i + 1; m < j; m++) {
+        double t = chord2 > 0.0 ? CLAMP(vec_dot(vec_sub(k[m].p, k[i].p), axis) / chord2, 0.0, 1.0) : 0.0;
+        double r = k[i].r + (k[j].r - k[i].r) * t, slack = MAX(b->tol.position, b->tol.radius * r);
+        double off = vec_dist(k[m].p, vec_lerp(k[i].p, k[j].p, t)) / slack;
+        double wide = fabs(k[m].r - r) / (MIN(slack, MAX(b->tol.radius, 0.02) * r) + 1e-9);
+        double young = b->tol.radius > 0.0 ? 0.0 : fabs(k[m].birth - (k[i].birth + (k[j - 1].birth - k[i].birth) * t));
+        double miss = MAX(MAX(off, wide), young);
+        if (miss > top) {
+            top = miss;
+            at = m;
+        }
+        length += vec_dist(k[m - 1].p, k[m].p);
+    }
+    length += vec_dist(k[j - 1].p, k[j].p);
+    /* Wider strokes overlap themselves at bends, so length matters less to their area. */
+    gboolean shrinks = length - chord > length_loss * length && length - chord > 0.25 * b->tol.radius * k[i].r;
+    return top > 1.0 || (shrinks && at != i) ? at : i;
+}
+
+static int by_index(const void *a, const void *b)
+{
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Douglas and Peucker (1973), over position, radius and age at once. */
+static void simplify(Builder *b)
+{
+    uint32_t range[2] = {0, b->line->len - 1};
+    g_array_set_size(b->kept, 0);
+    g_array_set_size(b->stack, 0);
+    g_array_append_vals(b->kept, range, 2);
+    g_array_append_vals(b->stack, range, 2);
+    while (b->stack->len > 0) {
+        uint32_t *top = (uint32_t *)(void *)b->stack->data + b->stack->len - 2, i = top[0], j = top[1];
+        g_array_set_size(b->stack, b->stack->len - 2);
+        uint32_t m = worst(b, i, j);
+        if (m == i)
+            continue;
+        uint32_t two[4] = {i, m, m, j};
+        g_array_append_val(b->kept, m);
+        g_array_append_vals(b->stack, two, 4);
+    }
+    qsort(b->kept->data, b->kept->len, sizeof(uint32_t), by_index);
+}
+
+/* Is the part of an end disc of radius r that lies beyond the piece's other end within the disc there? With x >= length,
+ * (x - length)² + y² <= x² + y² - length². */
+static bool swallows(const Capsule *k, double r, double other) { return other * other >= r * r - k->length * k->length; }
+
+/* At the joint of two pieces neither need draw the whole disc. The half beyond the first piece lies beside the second's axis, in the
+ * second, or beyond its end, in the disc there, for which the same holds; but for a wedge on the outer side of the bend. */
+static void join(Stroke *a, Stroke *b)
+{
+    double r = b->shape.ra;
+    if (a->shape.length == 0.0 || b->shape.length == 0.0 || !swallows(&a->shape, r, a->shape.ra) || !swallows(&b->shape, r, b->shape.rb))
+        return;
+    a->cut |= CUT_B;
+    b->cut |= CUT_A;
+    b->before = a->shape.d;
+}
+
+static void emit(Builder *b, uint32_t vein, uint8_t order)
+{
+    const Knot *k = knots(b->line);
+    const uint32_t *at = (const uint32_t *)(void *)b->kept->data;
+    Strokes *s = b->out;
+    for (uint32_t i = 0; i + 1 < b->kept->len; i++) {
+        const Knot *p = &k[at[i]], *q = &k[at[i + 1]];
+        if (s->n == s->cap) {
+            s->cap = s->cap > 0 ? s->cap * 2 : 1024;
+            s->v = g_renew(Stroke, s->v, s->cap);
+        }
+        s->v[s->n++] = (Stroke){capsule_new(p->p, p->r, q->p, q->r), vein, (float)p->birth, (float)k[at[i + 1] - 1].birth, order, CUT_NONE, {0.0, 0.0}};
+        if (i > 0)
+            join(&s->v[s->n - 2], &s->v[s->n - 1]);
+    }
+}
+
+Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol)
+{
+    uint32_t *edge = edges_by_vein(net);
+    Builder b = {.tol = tol, .out = g_new0(Strokes, 1)};
+    b.knot = g_array_new(FALSE, FALSE, sizeof(Knot));
+    b.line = g_array_new(FALSE, FALSE, sizeof(Knot));
+    b.kept = g_array_new(FALSE, FALSE, sizeof(uint32_t));
+    b.stack = g_array_new(FALSE, FALSE, sizeof(uint32_t));
+    for (uint32_t first = 0, next; first < net->n_edges; first = next) {
+        const uint32_t *e = edge + first;
+        uint32_t n = 1;
+        while (first + n < net->n_edges && net->vein[e[n]] == net->vein[e[0]] && net->tail[e[n]] == net->head[e[n - 1]])
+            n++;
+        next = first + n;
+        collect_knots(&b, net, frame, e, n);
+        blend_radii(&b);
+        blend_radii(&b);
+        smooth(&b);
+        simplify(&b);
+        emit(&b, net->vein[e[0]], net->order[e[0]]);
+    }
+    g_array_free(b.knot, TRUE);
+    g_array_free(b.line, TRUE);
+    g_array_free(b.kept, TRUE);
+    g_array_free(b.stack, TRUE);
+    g_free(edge);
+    return b.out;
+}
+
+void strokes_free(Strokes *s)
+{
+    if (s == NULL)
+        return;
+    g_free(s->v);
+    g_free(s);
+}

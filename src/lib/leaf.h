@@ -1,0 +1,28 @@
+/* What the handles of the public header hold. */
+#ifndef LIB_LEAF_H
+#define LIB_LEAF_H
+
+#include "param/params.h"
+#include "sim/network.h"
+#include "sim/simulation.h"
+#include "venation.h"
+
+struct VenParams {
+    Params *values;
+};
+
+struct VenLeaf {
+    Params *params;
+    uint64_t seed;
+    unsigned threads;
+    Network *net;
+    SimulationCounts counts;
+    double length;  /* segments, base to tip, at this step */
+    uint32_t growth_steps;
+    Box2 stage;     /* holds the leaf at every step of its run, segments: frames share its scale */
+};
+
+/* FNV-1a over the network's bytes: nodes, edges, widths, orders. One number that changes when anything does. */
+uint64_t leaf_hash(const Network *net);
+
+#endif

@@ -1,0 +1,136 @@
+/* The run record: all that a run depends on and what came of it, and no time or place, so that equal runs give equal bytes. */
+#include "export/export.h"
+#include "lib/leaf.h"
+
+static uint64_t fnv(uint64_t h, const void *data, gsize n)
+{
+    const uint8_t *b = data;
+    for (gsize i = 0; i < n; i++)
+        h = (h ^ b[i]) * 0x100000001B3u;
+    return h;
+}
+
+uint64_t leaf_hash(const Network *net)
+{
+    uint64_t h = 0xCBF29CE484222325u;
+    h = fnv(h, &net->n_nodes, sizeof net->n_nodes);
+    h = fnv(h, &net->n_edges, sizeof net->n_edges);
+    h = fnv(h, net->node, sizeof *net->node * net->n_nodes);
+    h = fnv(h, net->node_birth, sizeof *net->node_birth * net->n_nodes);
+    h = fnv(h, net->tail, sizeof *net->tail * net->n_edges);
+    h = fnv(h, net->head, sizeof *net->head * net->n_edges);
+    h = fnv(h, net->birth, sizeof *net->birth * net->n_edges);
+    h = fnv(h, net->kind, sizeof *net->kind * net->n_edges);
+    h = fnv(h, net->width, sizeof *net->width * net->n_edges);
+    h = fnv(h, net->order, sizeof *net->order * net->n_edges);
+    h = fnv(h, net->rank, sizeof *net->rank * net->n_edges);
+    h = fnv(h, net->vein, sizeof *net->vein * net->n_edges);
+    return fnv(h, net->margin->v, sizeof *net->margin->v * net->margin->n);
+}
+
+static void key(GString *s, const char *indent, const char *name)
+{
+    g_string_append(s, indent);
+    export_json_string(s, name);
+    g_string_append(s, ": ");
+}
+
+static void number(GString *s, const char *name, double v, const char *end)
+{
+    key(s, "    ", name);
+    export_number(s, v);
+    g_string_append(s, end);
+}
+
+static void list(GString *s, const double *v, uint32_t n, gboolean points)
+{
+    g_string_append_c(s, '[');
+    for (uint32_t i = 0; i < n; i++) {
+        g_string_append(s, i ? ", " : "");
+        if (points)
+            g_string_append_c(s, '[');
+        export_number(s, v[points ? 2 * i : i]);
+        if (points) {
+            g_string_append(s, ", ");
+            export_number(s, v[2 * i + 1]);
+            g_string_append_c(s, ']');
+        }
+    }
+    g_string_append_c(s, ']');
+}
+
+static void value(GString *s, const Params *p, ParamId id)
+{
+    uint32_t n;
+    const double *v;
+    char *text;
+    switch (param_info(id)->type) {
+    case TYPE_NUMBER:
+        export_number(s, params_number(p, id));
+        break;
+    case TYPE_INTEGER:
+        g_string_append_printf(s, "%" G_GINT64_FORMAT, (gint64)params_integer(p, id));
+        break;
+    case TYPE_SWITCH:
+        g_string_append(s, params_switch(p, id) ? "true" : "false");
+        break;
+    case TYPE_NUMBERS:
+    case TYPE_POINTS:
+        v = params_list(p, id, &n);
+        list(s, v, n, param_info(id)->type == TYPE_POINTS);
+        break;
+    default:
+        text = params_format(p, id);
+        export_json_string(s, text);
+        g_free(text);
+    }
+}
+
+static void parameters(GString *s, const Params *p)
+{
+    const char *section = NULL;
+    g_string_append(s, "  \"parameters\": {");
+    for (int i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = param_info((ParamId)i);
+        gboolean first = !section || !g_str_equal(section, info->section);
+        if (first) {
+            g_string_append(s, section ? "\n    },\n" : "\n");
+            key(s, "    ", info->section);
+            g_string_append_c(s, '{');
+            section = info->section;
+        }
+        g_string_append(s, first ? "\n" : ",\n");
+        key(s, "      ", info->key);
+        value(s, p, (ParamId)i);
+    }
+    g_string_append(s, "\n    }\n  },\n");
+}
+
+char *ven_leaf_record(const VenLeaf *leaf)
+{
+    const SimulationCounts *c = &leaf->counts;
+    const Network *net = leaf->net;
+    GString *s = g_string_new("{\n  \"format\": \"venation-record-1\",\n  \"version\": \"" VENATION_VERSION "\",\n");
+    key(s, "  ", "title");
+    export_json_string(s, params_text(leaf->params, PARAM_LEAF_TITLE));
+    g_string_append_printf(s, ",\n  \"seed\": %" G_GUINT64_FORMAT ",\n", (guint64)leaf->seed);
+    parameters(s, leaf->params);
+    g_string_append(s, "  \"leaf\": {\n");
+    number(s, "length", leaf->length, ",\n");
+    number(s, "width", net->margin->box.x1 - net->margin->box.x0, ",\n");
+    number(s, "area", net->margin->area, "\n  },\n");
+    g_string_append_printf(s, "  \"network\": {\n    \"nodes\": %u,\n    \"edges\": %u,\n    \"veins\": %u,\n    \"anastomoses\": %u,\n",
+                           net->n_nodes, net->n_edges, net->n_veins, c->joins);
+    g_string_append_printf(s, "    \"hash\": \"%016" G_GINT64_MODIFIER "x\"\n  },\n", (guint64)leaf_hash(net));
+    g_string_append_printf(s,
+                           "  \"sources\": {\n    \"darts\": %" G_GUINT64_FORMAT ",\n    \"placed\": %" G_GUINT64_FORMAT
+                           ",\n    \"reached\": %" G_GUINT64_FORMAT ",\n    \"given_up\": %" G_GUINT64_FORMAT
+                           ",\n    \"left\": %u,\n    \"most_at_once\": %u\n  },\n",
+                           (guint64)c->darts, (guint64)c->placed, (guint64)c->reached, (guint64)c->given_up, c->sources, c->most_sources);
+    g_string_append_printf(s, "  \"run\": {\n    \"steps\": %u,\n    \"growth_steps\": %u,\n    \"source_updates\": %" G_GUINT64_FORMAT ",\n",
+                           c->step, leaf->growth_steps, (guint64)c->updates);
+    key(s, "    ", "end");
+    export_json_string(s, end_reason_text(c->end));
+    g_string_append(s, "\n  }\n}\n");
+    return g_string_free(s, FALSE);
+}

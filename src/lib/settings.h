@@ -1,0 +1,37 @@
+/* From the values of the parameter table to the definitions that the rooms work from. */
+#ifndef LIB_SETTINGS_H
+#define LIB_SETTINGS_H
+
+#include <glib.h>
+
+#include "geom/outline.h"
+#include "image/paint.h"
+#include "param/params.h"
+#include "sim/simulation.h"
+#include "sim/width.h"
+
+typedef enum {
+    SETTINGS_ERROR_CONFLICT, /* parameters that contradict each other */
+    SETTINGS_ERROR_SOURCES,  /* a line of the source list that is no source */
+} SettingsError;
+#define SETTINGS_ERROR settings_error_quark()
+GQuark settings_error_quark(void);
+
+/* The outline that [outline] asks for, in leaf coordinates. */
+Polygon *settings_outline(const Params *p, GError **error);
+
+/* The simulation that the parameters ask for, on outline `leaf`, which must outlive it. Free with settings_simulation_clear. */
+gboolean settings_simulation(const Params *p, const Polygon *leaf, uint64_t seed, unsigned threads, SimulationDef *def, GError **error);
+void settings_simulation_clear(SimulationDef *def);
+
+WidthDef settings_widths(const Params *p);
+PaintStyle settings_style(const Params *p, uint64_t seed, unsigned threads);
+
+/* Fills wanted[MAP_COUNT] from texture.maps; an unknown name is an error. */
+gboolean settings_maps(const Params *p, gboolean *wanted, GError **error);
+
+/* Auxin sources of a CSV file: x, y and an optional step a line, separated by commas, semicolons or blanks; '#' begins a comment; a
+ * first line of words is a heading. */
+gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GError **error);
+
+#endif

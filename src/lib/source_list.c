@@ -1,0 +1,66 @@
+#include <string.h>
+
+#include "lib/settings.h"
+
+static gboolean bad(GError **error, const char *path, unsigned line, const char *text)
+{
+    g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_SOURCES, "%s:%u: '%s' is no source: a line is x,y or x,y,step (segments from the base, tip along +y)",
+                path, line, text);
+    return FALSE;
+}
+
+static bool number(const char *s, double *v)
+{
+    char *end;
+    *v = g_ascii_strtod(s, &end);
+    return end != s && *end == '\0' && *v > -1e9 && *v < 1e9;
+}
+
+/* The parts of a line that are not empty; returns how many, at most 4. */
+static uint32_t split(char *line, char *part[4])
+{
+    uint32_t n = 0;
+    line[strcspn(line, "#")] = '\0';
+    for (char *s = line + strspn(line, ",; \t\r"); *s && n < 4; s += strspn(s, ",; \t\r")) {
+        part[n++] = s;
+        s += strcspn(s, ",; \t\r");
+        if (*s)
+            *s++ = '\0';
+    }
+    return n;
+}
+
+gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GError **error)
+{
+    char *text;
+    gsize length;
+    if (!g_file_get_contents(path, &text, &length, error)) {
+        g_prefix_error(error, "sources.file: ");
+        return FALSE;
+    }
+    GArray *out = g_array_new(FALSE, FALSE, sizeof(ListedSource));
+    char **line = g_strsplit(text, "\n", -1);
+    gboolean ok = TRUE;
+    for (unsigned i = 0; ok && line[i]; i++) {
+        char *copy = g_strstrip(g_strdup(line[i])), *part[4];
+        uint32_t parts = split(line[i], part);
+        double x, y, step = 0.0;
+        bool heading = i == 0 && parts >= 2 && !number(part[0], &x) && g_ascii_isalpha(part[0][0]);
+        if (parts && !heading) {
+            ok = parts >= 2 && parts <= 3 && number(part[0], &x) && number(part[1], &y) &&
+                 (parts == 2 || (number(part[2], &step) && step >= 0.0 && step == floor(step)));
+            if (ok) {
+                ListedSource s = {{x, y}, (uint32_t)step};
+                g_array_append_val(out, s);
+            } else {
+                bad(error, path, i + 1, copy);
+            }
+        }
+        g_free(copy);
+    }
+    g_strfreev(line);
+    g_free(text);
+    *n = out->len;
+    *list = (ListedSource *)g_array_free(out, !ok);
+    return ok;
+}

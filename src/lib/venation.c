@@ -1,0 +1,152 @@
+/* The public interface: parameters in, a grown leaf out. */
+#include "venation.h"
+
+#include <gio/gio.h>
+
+#include "lib/leaf.h"
+#include "lib/settings.h"
+
+const char *ven_version(void) { return VENATION_VERSION; }
+
+/* ---- parameters ---- */
+
+static VenParams *wrap(Params *values)
+{
+    if (!values)
+        return NULL;
+    VenParams *p = g_new(VenParams, 1);
+    p->values = values;
+    return p;
+}
+
+VenParams *ven_params_new(void) { return wrap(params_new()); }
+
+VenParams *ven_params_load(const char *path, GError **error) { return wrap(params_load(path, error)); }
+
+gboolean ven_params_set(VenParams *params, const char *key, const char *value, GError **error)
+{
+    char *assignment = g_strdup_printf("%s=%s", key, value);
+    gboolean ok = params_override(params->values, assignment, error);
+    g_free(assignment);
+    return ok;
+}
+
+char *ven_params_get(const VenParams *params, const char *key)
+{
+    int id = param_find(key);
+    return id < 0 ? NULL : params_format(params->values, (ParamId)id);
+}
+
+char *ven_params_text(const VenParams *params) { return params_to_file(params->values); }
+
+void ven_params_free(VenParams *params)
+{
+    if (!params)
+        return;
+    params_free(params->values);
+    g_free(params);
+}
+
+/* ---- growing ---- */
+
+static VenLeaf *leaf_new(const Params *params, const SimulationDef *def, const Simulation *sim)
+{
+    const Blade *blade = simulation_blade(sim);
+    WidthDef widths = settings_widths(params);
+    VenLeaf *leaf = g_new0(VenLeaf, 1);
+    leaf->params = params_copy(params);
+    leaf->seed = def->seed;
+    leaf->threads = def->threads;
+    leaf->net = simulation_network(sim);
+    network_assign_widths(leaf->net, &widths);
+    leaf->counts = simulation_counts(sim);
+    leaf->length = blade->length;
+    leaf->growth_steps = blade->last_step;
+    leaf->stage = blade->widest;
+    return leaf;
+}
+
+void ven_leaf_free(VenLeaf *leaf)
+{
+    if (!leaf)
+        return;
+    network_free(leaf->net);
+    params_free(leaf->params);
+    g_free(leaf);
+}
+
+/* Tells the caller where the run is; FALSE when it wants the run to stop. */
+static gboolean report(const Params *params, const SimulationDef *def, const Simulation *sim, const VenOptions *options)
+{
+    SimulationCounts c = simulation_counts(sim);
+    VenProgress p = {.step = c.step, .nodes = c.nodes, .sources = c.sources, .length = simulation_blade(sim)->length,
+                     .done = simulation_done(sim)};
+    VenLeaf *snapshot = NULL;
+    if (options->snapshot_every && (c.step % options->snapshot_every == 0 || c.end != END_RUNNING))
+        p.leaf = snapshot = leaf_new(params, def, sim);
+    gboolean go_on = options->progress(&p, options->user);
+    ven_leaf_free(snapshot);
+    return go_on;
+}
+
+static VenLeaf *run(const Params *params, const SimulationDef *def, const VenOptions *options, GError **error)
+{
+    Simulation *sim = simulation_new(def, error);
+    if (!sim)
+        return NULL;
+    gboolean more = TRUE, stopped = FALSE;
+    while (more && !stopped) {
+        more = simulation_step(sim);
+        stopped = options && options->progress && !report(params, def, sim, options);
+    }
+    VenLeaf *leaf = NULL;
+    if (stopped)
+        g_set_error(error, G_IO_ERROR, G_IO_ERROR_CANCELLED, "stopped at step %u", simulation_counts(sim).step);
+    else
+        leaf = leaf_new(params, def, sim);
+    simulation_free(sim);
+    return leaf;
+}
+
+VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *options, GError **error)
+{
+    const Params *p = params->values;
+    gboolean maps[MAP_COUNT];
+    if (!settings_maps(p, maps, error)) /* before the work, not after it */
+        return NULL;
+    Polygon *outline = settings_outline(p, error);
+    SimulationDef def;
+    VenLeaf *leaf = NULL;
+    if (outline && settings_simulation(p, outline, seed, options ? options->threads : 0, &def, error)) {
+        leaf = run(p, &def, options, error);
+        settings_simulation_clear(&def);
+    }
+    polygon_free(outline);
+    return leaf;
+}
+
+/* ---- the network ---- */
+
+uint32_t ven_leaf_nodes(const VenLeaf *leaf) { return leaf->net->n_nodes; }
+
+uint32_t ven_leaf_edges(const VenLeaf *leaf) { return leaf->net->n_edges; }
+
+void ven_leaf_node(const VenLeaf *leaf, uint32_t node, double *x, double *y, uint32_t *birth)
+{
+    g_return_if_fail(node < leaf->net->n_nodes);
+    if (x)
+        *x = leaf->net->node[node].x;
+    if (y)
+        *y = leaf->net->node[node].y;
+    if (birth)
+        *birth = leaf->net->node_birth[node];
+}
+
+void ven_leaf_edge(const VenLeaf *leaf, uint32_t edge, VenEdge *out)
+{
+    const Network *n = leaf->net;
+    g_return_if_fail(edge < n->n_edges);
+    *out = (VenEdge){.tail = n->tail[edge], .head = n->head[edge], .birth = n->birth[edge], .vein = n->vein[edge],
+                     .order = n->order[edge], .rank = n->rank[edge], .anastomosis = n->kind[edge] == EDGE_ANASTOMOSIS,
+                     .width = n->width[edge]};
+}

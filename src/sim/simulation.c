@@ -1,0 +1,238 @@
+#include "sim/simulation.h"
+
+#include <string.h>
+
+#include "sim/state.h"
+
+G_DEFINE_QUARK(simulation-error-quark, simulation_error)
+
+SimulationDef simulation_def_default(void)
+{
+    static const Vec2 base = {0.0, 0.0};
+    return (SimulationDef){.growth = growth_def_default(),
+                           .density = 0.0006,
+                           .birth_distance_sources = 10,
+                           .birth_distance_veins = 10,
+                           .pattern = PATTERN_CLOSED,
+                           .kill_distance = 1,
+                           .seeds = &base,
+                           .n_seeds = 1,
+                           .sinus_depth = 0.02,
+                           .join_distance = 2.5,
+                           .seed = 1};
+}
+
+const char *end_reason_text(EndReason r)
+{
+    static const char *const text[] = {"running", "every source was reached", "no vein can reach the sources left", "veins.max_steps"};
+    return text[r];
+}
+
+/* ---- one step ---- */
+
+/* Nonuniform growth carries nodes and sources along; distances change their ratios, so neighbourhoods are found anew. */
+static void carry_along(Simulation *s)
+{
+    Veins *v = &s->veins;
+    for (uint32_t i = 0; i < v->n; i++)
+        v->pos[i] = blade_place(s->blade, v->material[i]);
+    quadtree_reset(&v->tree, box_grow(s->blade->widest, 4.0));
+    for (uint32_t i = 0; i < v->n; i++)
+        quadtree_add(&v->tree, v->pos, i);
+    for (uint32_t k = 0; k < s->n_sources; k++) {
+        Source *src = &s->source[k];
+        Hood old = src->hood;
+        uint8_t tagged = src->tagged;
+        s->place[k] = src->hood.s = blade_place(s->blade, src->material);
+        source_look(s, src);
+        src->tagged = src->spent = 0;
+        for (uint32_t i = 0; i < src->hood.n; i++)
+            for (uint32_t j = 0; j < old.n; j++)
+                if (src->hood.m[i].v == old.m[j].v)
+                    src->tagged |= (uint8_t)((tagged >> j & 1) << i);
+    }
+    sources_index(s);
+}
+
+static void grow_blade(Simulation *s)
+{
+    bool grows = s->blade->step < s->blade->last_step;
+    blade_advance(s->blade);
+    if (grows && s->blade->moving)
+        carry_along(s);
+}
+
+/* Why the run ends after a step in which `live` sources pulled, or END_RUNNING. */
+static EndReason judge(const Simulation *s, uint32_t live)
+{
+    if (s->def.max_steps && s->blade->step >= s->def.max_steps)
+        return END_MAX_STEPS;
+    if (s->blade->step < s->blade->last_step || sources_waiting(s))
+        return END_RUNNING;
+    if (s->n_sources == 0)
+        return END_NO_SOURCES;
+    return live == 0 && s->n_fresh == 0 ? END_UNREACHED : END_RUNNING;
+}
+
+bool simulation_step(Simulation *s)
+{
+    if (s->counts.end != END_RUNNING)
+        return false;
+    grow_blade(s);
+    sources_place(s);
+    s->counts.most_sources = MAX(s->counts.most_sources, s->n_sources);
+    uint32_t live = veins_develop(s);
+    sources_remove(s);
+    s->counts.end = judge(s, live);
+    return s->counts.end == END_RUNNING;
+}
+
+/* ---- set-up ---- */
+
+static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
+{
+    double area = d->leaf->area * blade_length_at(b, b->last_step) * blade_length_at(b, b->last_step);
+    if (d->placement == PLACEMENT_DARTS && d->density * area > 1e8) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "sources.density = %g asks for %.3g darts a step on a blade of %.3g square segments; at most 1e8 are possible",
+                    d->density, d->density * area, area);
+        return FALSE;
+    }
+    if (d->placement == PLACEMENT_DARTS && !d->only_while_growing && MAX(d->birth_distance_veins, d->kill_distance) <= 0.0) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
+                    "sources.birth_distance_veins and veins.kill_distance are both 0, so darts would find room for ever: one of them must "
+                    "be above 0, or sources.duration = growth");
+        return FALSE;
+    }
+    return TRUE;
+}
+
+static gboolean plant_seeds(Simulation *s, GError **error)
+{
+    if (s->def.n_seeds == 0) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SEEDS, "veins.seeds is empty: a leaf needs at least one first vein node");
+        return FALSE;
+    }
+    double slack = 1e-6;
+    for (uint32_t i = 0; i < s->def.n_seeds; i++) {
+        Vec2 leaf = s->def.seeds[i];
+        if (!polygon_contains(s->def.leaf, leaf) && polygon_depth(s->def.leaf, leaf) < -slack) {
+            g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SEEDS,
+                        "veins.seeds: the first vein node at %g,%g lies outside the blade (leaf lengths, base 0,0, tip 0,1)", leaf.x, leaf.y);
+            return FALSE;
+        }
+        Vec2 material = vec_scale(leaf, s->def.growth.initial_length);
+        uint32_t v = veins_add(&s->veins, blade_place(s->blade, material), NO_POINT, 0);
+        if (s->blade->moving)
+            s->veins.material[v] = material;
+    }
+    return TRUE;
+}
+
+Simulation *simulation_new(const SimulationDef *def, GError **error)
+{
+    Blade *blade = blade_new(def->leaf, &def->growth, error);
+    if (!blade)
+        return NULL;
+    if (!check(def, blade, error)) {
+        blade_free(blade);
+        return NULL;
+    }
+    Simulation *s = g_new0(Simulation, 1);
+    s->def = *def;
+    s->blade = blade;
+    s->reach = reach_new(def->leaf, def->sinus_depth);
+    if (reach_is_trivial(s->reach)) {
+        reach_free(s->reach);
+        s->reach = NULL;
+    }
+    Box2 field = box_grow(blade->widest, 4.0 * blade->unit + 4.0);
+    veins_init(&s->veins, field);
+    if (blade->moving)
+        s->veins.material = g_new(Vec2, 1); /* grows with the nodes */
+    double least = MAX(def->birth_distance_sources, def->placement == PLACEMENT_DARTS ? 1.0 : sqrt(1.0 / MAX(def->density, 1e-12)));
+    zones_init(&s->zones, field, 2.0 * least);
+    if (!sources_prepare(s, error) || !plant_seeds(s, error)) {
+        simulation_free(s);
+        return NULL;
+    }
+    return s;
+}
+
+void simulation_free(Simulation *s)
+{
+    if (!s)
+        return;
+    for (uint32_t k = 0; k < s->n_sources; k++)
+        cell_clear(&s->source[k].cell);
+    reach_free(s->reach);
+    veins_clear(&s->veins);
+    zones_clear(&s->zones);
+    blade_free(s->blade);
+    g_free(s->source);
+    g_free(s->place);
+    g_free(s->waiting);
+    g_free(s->pull);
+    g_free(s->pulled);
+    g_free(s->fresh);
+    boxtree_clear(&s->fresh_tree);
+    g_free(s->touched);
+    g_free(s);
+}
+
+/* ---- what it tells ---- */
+
+SimulationCounts simulation_counts(const Simulation *s)
+{
+    SimulationCounts c = s->counts;
+    c.step = s->blade->step;
+    c.nodes = s->veins.n;
+    c.joins = s->veins.n_joins;
+    c.sources = s->n_sources;
+    c.given_up = c.end == END_RUNNING ? 0 : s->n_sources;
+    return c;
+}
+
+const Blade *simulation_blade(const Simulation *s) { return s->blade; }
+
+double simulation_done(const Simulation *s)
+{
+    /* a tip advances by one segment a step, so a run takes about as many steps as the leaf is long, and the growth before */
+    double expected = MAX((double)s->blade->last_step, blade_length_at(s->blade, s->blade->last_step) * 1.1);
+    double part = (double)s->blade->step / expected;
+    return s->counts.end != END_RUNNING ? 1.0 : part < 0.99 ? part : 0.99;
+}
+
+Network *simulation_network(const Simulation *s)
+{
+    const Veins *v = &s->veins;
+    uint32_t n_edges = v->n_joins;
+    for (uint32_t i = 0; i < v->n; i++)
+        n_edges += v->parent[i] != NO_POINT;
+    Network *net = network_new(v->n, n_edges);
+    net->n_steps = s->blade->step;
+    double to_segments = s->blade->moving ? 1.0 : 1.0 / s->blade->unit;
+    uint32_t e = 0;
+    for (uint32_t i = 0; i < v->n; i++) {
+        net->node[i] = vec_scale(v->pos[i], to_segments);
+        net->node_birth[i] = v->birth[i];
+        if (v->parent[i] == NO_POINT)
+            continue;
+        net->tail[e] = v->parent[i];
+        net->head[e] = i;
+        net->birth[e] = v->birth[i];
+        net->kind[e++] = EDGE_VEIN;
+    }
+    for (uint32_t j = 0; j < v->n_joins; j++, e++) {
+        net->tail[e] = v->join_tail[j];
+        net->head[e] = v->join_head[j];
+        net->birth[e] = v->join_birth[j];
+        net->kind[e] = EDGE_ANASTOMOSIS;
+    }
+    Polygon *outline = blade_outline(s->blade);
+    for (uint32_t i = 0; i < outline->n; i++)
+        outline->v[i] = vec_scale(outline->v[i], to_segments);
+    net->margin = polygon_new(outline->v, outline->n);
+    polygon_free(outline);
+    return net;
+}

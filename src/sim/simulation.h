@@ -1,0 +1,92 @@
+/* The simulation of vein development (Runions 2005, sections 3 and 4). */
+#ifndef SIM_SIMULATION_H
+#define SIM_SIMULATION_H
+
+#include <glib.h>
+
+#include "geom/polygon.h"
+#include "sim/growth.h"
+#include "sim/network.h"
+
+typedef enum { PATTERN_OPEN, PATTERN_CLOSED } Pattern;
+typedef enum { NEIGHBOURHOOD_RELATIVE, NEIGHBOURHOOD_URQUHART } Neighbourhood;
+typedef enum { PLACEMENT_DARTS, PLACEMENT_MARGIN, PLACEMENT_LIST } Placement;
+
+/* A source of an explicit list: where it is, in segments, and the step from which on it may appear. */
+typedef struct {
+    Vec2 pos;
+    uint32_t step;
+} ListedSource;
+
+typedef struct {
+    const Polygon *leaf; /* outline in leaf coordinates; borrowed for the life of the simulation */
+    GrowthDef growth;
+    /* auxin sources; lengths in segments */
+    Placement placement;
+    double density;                        /* darts per segment² and step; margin: per segment², once */
+    bool only_while_growing;               /* no darts once growth has ended */
+    double birth_distance_sources, birth_distance_veins;
+    const ListedSource *list;              /* PLACEMENT_LIST; borrowed */
+    uint32_t n_list;
+    /* veins */
+    Pattern pattern;
+    Neighbourhood neighbourhood;
+    double kill_distance;
+    const Vec2 *seeds; /* first nodes, in initial leaf lengths; borrowed during simulation_new */
+    uint32_t n_seeds;
+    double sinus_depth;   /* leaf lengths */
+    double join_distance; /* segments */
+    uint32_t max_steps;   /* 0: no limit */
+    uint64_t seed;
+    unsigned threads;
+} SimulationDef;
+
+SimulationDef simulation_def_default(void);
+
+typedef enum {
+    SIMULATION_ERROR_SEEDS,   /* a first vein node outside the blade, or none */
+    SIMULATION_ERROR_SOURCES, /* a listed source outside the leaf, a placement that doesn't fit the growth */
+    SIMULATION_ERROR_SIZE,    /* the leaf would be too large to grow */
+} SimulationError;
+#define SIMULATION_ERROR simulation_error_quark()
+GQuark simulation_error_quark(void);
+
+/* Why a run ended. */
+typedef enum {
+    END_RUNNING,
+    END_NO_SOURCES, /* growth has ended and every source was reached */
+    END_UNREACHED,  /* growth has ended and none of the sources left can be reached */
+    END_MAX_STEPS,
+} EndReason;
+const char *end_reason_text(EndReason r);
+
+typedef struct {
+    uint32_t step, nodes, joins; /* joins: anastomoses */
+    uint32_t sources;            /* alive now */
+    uint64_t darts, placed;      /* thrown, accepted */
+    uint64_t reached;            /* sources that veins reached */
+    uint64_t given_up;           /* sources still there when the run ended: no vein could reach them */
+    uint64_t updates;            /* source neighbourhood updates (work done) */
+    uint32_t most_sources;       /* alive at one step */
+    EndReason end;
+} SimulationCounts;
+
+typedef struct Simulation Simulation;
+
+Simulation *simulation_new(const SimulationDef *def, GError **error);
+void simulation_free(Simulation *s);
+
+/* One turn of the loop of section 3.3: grow the blade, place the sources, develop the veins, remove the sources. Returns FALSE, with
+ * counts.end set, when the run has ended. */
+bool simulation_step(Simulation *s);
+
+SimulationCounts simulation_counts(const Simulation *s);
+const Blade *simulation_blade(const Simulation *s);
+
+/* Rough part of the run that is done, 0 … 1, for progress bars. */
+double simulation_done(const Simulation *s);
+
+/* The veins as they are now, as a graph in segments: nodes and edges without widths and orders (widths_assign, orders_assign). */
+Network *simulation_network(const Simulation *s);
+
+#endif

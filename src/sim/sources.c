@@ -1,0 +1,231 @@
+/* Auxin source placement (Runions 2005, section 3.3). */
+#include <string.h>
+
+#include "geom/random.h"
+#include "sim/state.h"
+
+/* No source is placed nearer to a vein than b_v, nor within the kill distance: it would be removed in the same step without ever having
+ * been out of reach, but pull a stub of vein out of its neighbour before. */
+static double vein_clearance(const Simulation *s)
+{
+    return MAX(s->def.birth_distance_veins, s->def.kill_distance) * s->blade->unit;
+}
+
+/* A source sees a node unless the blade's margin comes between them, decided when the younger of the two is born. */
+static bool sees(const void *user, uint32_t node)
+{
+    const Eye *eye = user;
+    const Simulation *s = eye->sim;
+    Vec2 a = eye->src->hood.s, b = s->veins.pos[node];
+    if (s->blade->moving) {
+        a = vec_scale(eye->src->material, 1.0 / s->def.growth.initial_length);
+        b = vec_scale(s->veins.material[node], 1.0 / s->def.growth.initial_length);
+        return reach_sees(s->reach, a, b);
+    }
+    double scale = 1.0 / blade_scale_at(s->blade, MAX(eye->src->birth, s->veins.birth[node]));
+    return reach_sees(s->reach, vec_scale(a, scale), vec_scale(b, scale));
+}
+
+Field source_field(const Simulation *s, const Source *src, Eye *eye)
+{
+    *eye = (Eye){s, src};
+    Vec2 c = s->veins.tree.centre;
+    double h = s->veins.tree.half;
+    return (Field){s->veins.pos, &s->veins.tree, {c.x - h, c.y - h, c.x + h, c.y + h}, s->reach ? sees : NULL, eye};
+}
+
+void source_look(Simulation *s, Source *src)
+{
+    Eye eye;
+    Field f = source_field(s, src, &eye);
+    if (s->def.pattern == PATTERN_OPEN)
+        nearest_find(&src->hood, &f, src->hood.s);
+    else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE)
+        hood_find(&src->hood, &f, src->hood.s);
+    else
+        urquhart_find(&src->hood, &src->cell, &f, src->hood.s);
+    s->counts.updates++;
+}
+
+static void source_add(Simulation *s, Vec2 p)
+{
+    if (s->n_sources == s->cap_sources) {
+        s->cap_sources = MAX(s->cap_sources * 2, 256);
+        s->source = g_renew(Source, s->source, s->cap_sources);
+        s->place = g_renew(Vec2, s->place, s->cap_sources);
+        s->touched = g_renew(uint32_t, s->touched, s->cap_sources);
+    }
+    uint32_t i = s->n_sources++;
+    Source *src = &s->source[i];
+    *src = (Source){.birth = s->blade->step};
+    src->hood.s = p;
+    src->material = s->blade->moving ? blade_material(s->blade, p) : p;
+    s->place[i] = p;
+    source_look(s, src);
+    zones_add(&s->zones, p, src->hood.zone);
+    s->counts.placed++;
+    s->placed_now++;
+}
+
+static bool vacant(const Simulation *s, Vec2 p)
+{
+    return !zones_any_within(&s->zones, s->place, p, s->def.birth_distance_sources * s->blade->unit) &&
+           !quadtree_any_within(&s->veins.tree, s->veins.pos, p, vein_clearance(s));
+}
+
+/* A point uniform in the blade, by rejection from its box; FALSE in the (practically impossible) case of a long run of misses. */
+static bool dart(const Simulation *s, uint64_t index, Vec2 *p)
+{
+    enum { TRIES = 256 };
+    Box2 b = s->blade->box;
+    for (uint64_t k = 0; k < TRIES; k++) {
+        double u[2];
+        random_pair(s->def.seed, RANDOM_DART, s->blade->step, index * TRIES + k, u);
+        *p = vec2(b.x0 + u[0] * (b.x1 - b.x0), b.y0 + u[1] * (b.y1 - b.y0));
+        if (blade_contains(s->blade, *p))
+            return true;
+    }
+    return false;
+}
+
+static void throw_darts(Simulation *s)
+{
+    if (s->def.only_while_growing && s->blade->step > MAX(s->blade->last_step, 1))
+        return;
+    s->dart_carry += s->def.density * s->blade->area;
+    uint64_t n = (uint64_t)s->dart_carry; /* the fraction is carried over, so that the mean is rho exactly */
+    s->dart_carry -= (double)n;
+    s->counts.darts += n;
+    for (uint64_t i = 0; i < n; i++) {
+        Vec2 p;
+        if (dart(s, i, &p) && vacant(s, p))
+            source_add(s, p);
+    }
+}
+
+/* Waiting sources whose time has come. The precomputed set keeps b_s already; a listed source is placed as the user wants it. */
+static void place_waiting(Simulation *s)
+{
+    bool listed = s->def.placement == PLACEMENT_LIST;
+    uint32_t keep = s->next_waiting, i = keep;
+    for (; i < s->n_waiting && s->waiting[i].step <= s->blade->step; i++) {
+        Vec2 p = listed && !s->blade->moving ? vec_scale(s->waiting[i].pos, s->blade->unit) : s->waiting[i].pos;
+        if (!blade_contains(s->blade, p) && s->blade->step < s->blade->last_step) {
+            s->waiting[keep++] = s->waiting[i]; /* the margin has not passed it yet */
+            continue;
+        }
+        if (listed || !quadtree_any_within(&s->veins.tree, s->veins.pos, p, vein_clearance(s)))
+            source_add(s, p);
+    }
+    /* those that still wait move up to the end of the part just read */
+    uint32_t kept = keep - s->next_waiting;
+    memmove(s->waiting + i - kept, s->waiting + s->next_waiting, sizeof *s->waiting * kept);
+    s->next_waiting = i - kept;
+}
+
+bool sources_waiting(const Simulation *s) { return s->next_waiting < s->n_waiting; }
+
+void sources_place(Simulation *s)
+{
+    s->placed_now = 0;
+    if (s->def.placement == PLACEMENT_DARTS)
+        throw_darts(s);
+    else
+        place_waiting(s);
+}
+
+void sources_index(Simulation *s)
+{
+    zones_reset(&s->zones);
+    for (uint32_t i = 0; i < s->n_sources; i++)
+        zones_add(&s->zones, s->place[i], s->source[i].hood.zone);
+}
+
+/* ---- sources known beforehand ---- */
+
+static gint by_step(gconstpointer a, gconstpointer b, gpointer unused)
+{
+    const ListedSource *p = a, *q = b;
+    return p->step < q->step ? -1 : p->step > q->step;
+}
+
+/* First step at which the growing margin has passed p. */
+static uint32_t step_passed(const Blade *b, Vec2 p)
+{
+    uint32_t lo = 0, hi = b->last_step;
+    while (lo < hi) {
+        uint32_t mid = lo + (hi - lo) / 2;
+        if (polygon_contains(b->leaf, vec_scale(p, 1.0 / blade_scale_at(b, mid))))
+            hi = mid;
+        else
+            lo = mid + 1;
+    }
+    return lo;
+}
+
+static gboolean prepare_margin(Simulation *s, GError **error)
+{
+    Box2 box = s->blade->widest;
+    double scale = 1.0 / blade_scale_at(s->blade, s->blade->last_step);
+    double count = s->def.density * (box.x1 - box.x0) * (box.y1 - box.y0);
+    if (s->def.growth.kind != GROWTH_MARGINAL && s->def.growth.kind != GROWTH_NONE) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
+                    "sources.placement = margin needs growth.kind = marginal or none: in diffuse growth sources appear all over the blade");
+        return FALSE;
+    }
+    if (count > 1e8) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "sources.density = %g asks for %.3g darts at once; at most 1e8 are possible", s->def.density, count);
+        return FALSE;
+    }
+    Zones grid;
+    zones_init(&grid, box, MAX(s->def.birth_distance_sources, sqrt(1.0 / MAX(s->def.density, 1e-12))));
+    GArray *set = g_array_new(FALSE, FALSE, sizeof(ListedSource));
+    GArray *place = g_array_new(FALSE, FALSE, sizeof(Vec2));
+    s->counts.darts = (uint64_t)count;
+    for (uint64_t i = 0; i < s->counts.darts; i++) {
+        double u[2];
+        random_pair(s->def.seed, RANDOM_MARGIN, 0, i, u);
+        Vec2 p = vec2(box.x0 + u[0] * (box.x1 - box.x0), box.y0 + u[1] * (box.y1 - box.y0));
+        if (!polygon_contains(s->def.leaf, vec_scale(p, scale)) ||
+            zones_any_within(&grid, (Vec2 *)place->data, p, s->def.birth_distance_sources))
+            continue;
+        ListedSource it = {p, step_passed(s->blade, p)};
+        zones_add(&grid, p, (Box2){p.x, p.y, p.x, p.y});
+        g_array_append_val(place, p);
+        g_array_append_val(set, it);
+    }
+    zones_clear(&grid);
+    g_array_free(place, TRUE);
+    s->n_waiting = set->len;
+    s->waiting = (ListedSource *)g_array_free(set, FALSE);
+    return TRUE;
+}
+
+static gboolean prepare_list(Simulation *s, GError **error)
+{
+    s->n_waiting = s->def.n_list;
+    s->waiting = g_memdup2(s->def.list, sizeof(ListedSource) * s->def.n_list);
+    for (uint32_t i = 0; i < s->n_waiting; i++) {
+        Box2 b = s->blade->widest;
+        bool inside = s->blade->moving ? box_has(b, s->waiting[i].pos)
+                                       : polygon_contains(s->def.leaf, vec_scale(s->waiting[i].pos, 1.0 / blade_length_at(s->blade, MAX(s->waiting[i].step, s->blade->last_step))));
+        if (!inside) {
+            g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
+                        "sources.file: source %u at %g,%g lies outside the blade, which is %g segments long in the end", i + 1,
+                        s->waiting[i].pos.x, s->waiting[i].pos.y, blade_length_at(s->blade, s->blade->last_step));
+            return FALSE;
+        }
+    }
+    return TRUE;
+}
+
+gboolean sources_prepare(Simulation *s, GError **error)
+{
+    gboolean ok = s->def.placement == PLACEMENT_MARGIN ? prepare_margin(s, error)
+                  : s->def.placement == PLACEMENT_LIST ? prepare_list(s, error)
+                                                       : TRUE;
+    if (ok && s->n_waiting > 1) /* stable: glib's is a merge sort */
+        g_qsort_with_data(s->waiting, (gint)s->n_waiting, sizeof *s->waiting, by_step, NULL);
+    return ok;
+}

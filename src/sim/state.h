@@ -1,0 +1,101 @@
+/* What a running simulation holds; private to src/sim. */
+#ifndef SIM_STATE_H
+#define SIM_STATE_H
+
+#include "geom/neighbours.h"
+#include "geom/quadtree.h"
+#include "geom/reach.h"
+#include "geom/zones.h"
+#include "sim/simulation.h"
+
+/* The veins so far. Node arrays are [cap]; 40 bytes a node with the links below, plus its place in the tree. */
+typedef struct {
+    uint32_t n, cap;
+    Vec2 *pos;         /* in the frame (growth.h) */
+    Vec2 *material;    /* moving frames only */
+    uint32_t *parent;  /* NO_POINT for a seed */
+    uint32_t *birth;   /* step */
+    uint32_t *pull;    /* index of the node's entry in Simulation.pulled during a step; stale otherwise */
+    Quadtree tree;
+    uint32_t *join_tail, *join_head, *join_birth; /* anastomoses */
+    uint32_t n_joins, cap_joins;
+} Veins;
+
+/* An auxin source. Bit i of a mask speaks of member i of the hood. */
+typedef struct {
+    Hood hood;         /* nodes that it pulls; hood.s is its place */
+    Cell cell;         /* Urquhart neighbourhoods only */
+    Vec2 material;     /* moving frames only */
+    uint32_t birth;    /* step */
+    bool reached;      /* closed: a vein came within the kill distance; from then on only tagged veins count */
+    uint8_t tagged;    /* mask: this member belongs to a tagged vein */
+    uint8_t spent;     /* mask: this member can't get nearer */
+    uint8_t n_arrived;
+    uint32_t arrived[HOOD_MAX]; /* tagged veins' nodes that came within the kill distance */
+} Source;
+
+/* One pull of a source at a vein node. */
+typedef struct {
+    uint32_t source;
+    uint8_t member;
+    uint32_t next; /* of the same node, NO_POINT at the end */
+} Pull;
+
+/* A vein node that is pulled in this step: S(v) and the sum of eq. 1. */
+typedef struct {
+    uint32_t node;
+    uint32_t first, last; /* its pulls */
+    uint32_t count;
+    Vec2 sum;
+} Pulled;
+
+struct Simulation {
+    SimulationDef def;
+    Blade *blade;
+    Reach *reach; /* NULL: no sinus can come between a source and a vein */
+    Veins veins;
+    Source *source; /* [n_sources] */
+    Vec2 *place;    /* [n_sources] their places, for the index */
+    uint32_t n_sources, cap_sources;
+    Zones zones;    /* of the sources */
+    double dart_carry;
+    /* sources that wait to appear (margin, list), in the order in which they may */
+    ListedSource *waiting;
+    uint32_t n_waiting, next_waiting;
+    uint32_t placed_now; /* in this step */
+    /* work space of one step */
+    Pull *pull;
+    Pulled *pulled;
+    uint32_t n_pull, cap_pull, n_pulled, cap_pulled;
+    uint32_t *fresh; /* nodes born in this step */
+    uint32_t n_fresh, cap_fresh;
+    Boxtree fresh_tree;
+    uint32_t *touched, n_touched; /* [cap_sources] sources that the fresh nodes may concern */
+    SimulationCounts counts;
+};
+
+/* veins.c */
+void veins_init(Veins *v, Box2 field);
+void veins_clear(Veins *v);
+uint32_t veins_add(Veins *v, Vec2 pos, uint32_t parent, uint32_t step);
+void veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step);
+
+/* sources.c */
+gboolean sources_prepare(Simulation *s, GError **error);
+void sources_place(Simulation *s);           /* the step's new sources */
+void source_look(Simulation *s, Source *src); /* finds its neighbourhood from scratch */
+void sources_index(Simulation *s);           /* rebuilds s->zones */
+bool sources_waiting(const Simulation *s);
+
+/* develop.c */
+uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there are */
+void sources_remove(Simulation *s);    /* tags, arrivals, anastomoses, removal */
+
+/* The points as source `src` sees them. */
+typedef struct {
+    const Simulation *sim;
+    const Source *src;
+} Eye;
+Field source_field(const Simulation *s, const Source *src, Eye *eye);
+
+#endif

@@ -1,0 +1,192 @@
+#include "sim/width.h"
+
+#include <glib.h>
+
+#include "geom/dmath.h"
+
+enum { NONE = UINT32_MAX };
+
+/* A branch is a primary too when it leaves within this part of the leaf length from a first node … */
+static const double primary_reach = 0.06;
+/* … and begins at least this wide, as part of the vein it leaves. */
+static const double primary_width = 0.45;
+
+WidthDef width_def_default(void)
+{
+    return (WidthDef){.exponent = 2.0, .minimum = 0.5, .thickening = 0.0, .rank_ratio = 0.6};
+}
+
+/* Edges by node, as chains through `next`. */
+typedef struct {
+    uint32_t *first, *next; /* [nodes], [edges] */
+} Chains;
+
+static Chains chains_new(const Network *net, const uint32_t *by)
+{
+    Chains c = {g_new(uint32_t, net->n_nodes), g_new(uint32_t, net->n_edges)};
+    for (uint32_t v = 0; v < net->n_nodes; v++)
+        c.first[v] = NONE;
+    for (uint32_t e = net->n_edges; e-- > 0;) { /* backwards, so that a chain runs forwards */
+        c.next[e] = c.first[by[e]];
+        c.first[by[e]] = e;
+    }
+    return c;
+}
+
+static void chains_free(Chains c)
+{
+    g_free(c.first);
+    g_free(c.next);
+}
+
+/* Index order is a topological order, so one pass from the youngest node to the oldest hands every flow down. With `extra` > 0
+ * veins of order 1 and 2 gain that much at each node. */
+static void assign_flow(Network *net, Chains in, Chains out, double extra)
+{
+    for (uint32_t v = net->n_nodes; v-- > 0;) {
+        uint32_t parents = 0;
+        double sum = 0.0;
+        for (uint32_t e = in.first[v]; e != NONE; e = in.next[e])
+            parents++;
+        for (uint32_t e = out.first[v]; e != NONE; e = out.next[e])
+            sum += net->flow[e];
+        if (out.first[v] == NONE)
+            sum = (double)parents; /* a free end: every vein that comes here ends as a veinlet */
+        for (uint32_t e = in.first[v]; e != NONE; e = in.next[e])
+            net->flow[e] = sum / (double)parents + (net->order[e] == 1 || net->order[e] == 2 ? extra : 0.0);
+    }
+}
+
+static void assign_width(Network *net, const WidthDef *def)
+{
+    double last_flow = -1.0, last_width = 0.0; /* neighbours on a vein mostly share their flow: one power for a run */
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        if (net->flow[e] != last_flow) {
+            last_flow = net->flow[e];
+            last_width = def->minimum * dmath_pow(last_flow, 1.0 / def->exponent);
+        }
+        net->width[e] = last_width;
+    }
+}
+
+/* The child that continues a vein: the one of greatest flow, the oldest of equals. */
+static uint32_t continuation(const Network *net, Chains out, uint32_t v)
+{
+    uint32_t best = NONE;
+    for (uint32_t e = out.first[v]; e != NONE; e = out.next[e])
+        if (net->kind[e] == EDGE_VEIN && (best == NONE || net->flow[e] > net->flow[best]))
+            best = e;
+    return best;
+}
+
+static void start_vein(Network *net, uint32_t e, uint8_t order)
+{
+    net->vein[e] = net->n_veins++;
+    net->order[e] = order;
+}
+
+/* Veins and orders by hierarchy. root[v] is the first node of v's tree while it is near enough for primaries, else NONE. */
+static void assign_orders(Network *net, Chains in, Chains out, const uint32_t *root, double exponent)
+{
+    double least = dmath_pow(primary_width, exponent);
+    net->n_veins = 0;
+    for (uint32_t v = 0; v < net->n_nodes; v++) {
+        uint32_t main = continuation(net, out, v), entry = in.first[v];
+        while (entry != NONE && net->kind[entry] != EDGE_VEIN)
+            entry = in.next[entry];
+        for (uint32_t e = out.first[v]; e != NONE; e = out.next[e]) {
+            if (net->kind[e] != EDGE_VEIN)
+                continue;
+            if (entry == NONE) {
+                bool primary = e == main || net->flow[e] >= least * net->flow[main];
+                start_vein(net, e, primary ? 1 : 2);
+            } else if (e == main) {
+                net->vein[e] = net->vein[entry];
+                net->order[e] = net->order[entry];
+            } else if (net->order[entry] == 1 && root[v] != NONE && net->flow[e] >= least * net->flow[entry]) {
+                start_vein(net, e, 1);
+            } else {
+                start_vein(net, e, (uint8_t)MIN(net->order[entry] + 1, 250));
+            }
+        }
+    }
+}
+
+/* A node's order is that of the vein that grew it; an anastomosis takes the higher (finer) of its ends'. */
+static void assign_anastomoses(Network *net, Chains in)
+{
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        if (net->kind[e] != EDGE_ANASTOMOSIS)
+            continue;
+        uint8_t order = 1, rank = 1;
+        const uint32_t end[2] = {net->tail[e], net->head[e]};
+        for (int i = 0; i < 2; i++)
+            for (uint32_t k = in.first[end[i]]; k != NONE; k = in.next[k])
+                if (net->kind[k] == EDGE_VEIN) {
+                    order = MAX(order, net->order[k]);
+                    rank = MAX(rank, net->rank[k]);
+                }
+        start_vein(net, e, order);
+        net->rank[e] = rank;
+    }
+}
+
+static void assign_ranks(Network *net, Chains in, Chains out, double ratio)
+{
+    double widest = 0.0;
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        widest = MAX(widest, net->width[e]);
+    for (uint32_t v = 0; v < net->n_nodes; v++) {
+        uint32_t entry = in.first[v];
+        while (entry != NONE && net->kind[entry] != EDGE_VEIN)
+            entry = in.next[entry];
+        for (uint32_t e = out.first[v]; e != NONE; e = out.next[e]) {
+            if (net->kind[e] != EDGE_VEIN)
+                continue;
+            if (entry == NONE) {
+                net->rank[e] = 1;
+            } else if (net->vein[e] == net->vein[entry] || net->order[e] == 1 || net->width[e] >= ratio * net->width[entry]) {
+                net->rank[e] = net->rank[entry];
+            } else {
+                uint8_t class = 1;
+                for (double w = widest * ratio; net->width[e] < w && class < 9; w *= ratio)
+                    class++;
+                uint8_t lower = (uint8_t)MIN(net->rank[entry] + 1, 9);
+                net->rank[e] = class > lower ? class : lower;
+            }
+        }
+    }
+}
+
+/* First node of each node's tree, or NONE once farther from it than `reach`. */
+static uint32_t *roots_near(const Network *net, Chains in, double reach)
+{
+    uint32_t *root = g_new(uint32_t, net->n_nodes);
+    for (uint32_t v = 0; v < net->n_nodes; v++) {
+        root[v] = in.first[v] == NONE ? v : NONE;
+        for (uint32_t e = in.first[v]; e != NONE; e = in.next[e])
+            if (net->kind[e] == EDGE_VEIN && root[net->tail[e]] != NONE &&
+                vec_dist2(net->node[v], net->node[root[net->tail[e]]]) <= reach * reach)
+                root[v] = root[net->tail[e]];
+    }
+    return root;
+}
+
+void network_assign_widths(Network *net, const WidthDef *def)
+{
+    Chains in = chains_new(net, net->head), out = chains_new(net, net->tail);
+    double length = net->margin ? net->margin->box.y1 - net->margin->box.y0 : 0.0;
+    uint32_t *root = roots_near(net, in, primary_reach * length);
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        net->order[e] = 0;
+    assign_flow(net, in, out, 0.0);
+    assign_orders(net, in, out, root, def->exponent);
+    if (def->thickening > 0.0)
+        assign_flow(net, in, out, def->thickening);
+    assign_width(net, def);
+    assign_ranks(net, in, out, def->rank_ratio);
+    assign_anastomoses(net, in);
+    g_free(root);
+    chains_free(in);
+    chains_free(out);
+}

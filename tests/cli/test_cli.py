@@ -1,0 +1,665 @@
+#!/usr/bin/env python3
+"""The venation command as users and scripts meet it: exit statuses, messages, output, interruption. Emits TAP.
+
+    test_cli.py VENATION
+
+Needs the standard library alone. What can't be tested here is skipped with its reason.
+"""
+import fcntl
+import json
+import os
+import pty
+import re
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import termios
+import time
+
+VENATION = os.path.abspath(sys.argv[1]) if len(sys.argv) == 2 else sys.exit(__doc__)
+TIMEOUT = 120
+
+# Small and quick to grow and to write.
+SMALL = """\
+[leaf]
+title = Small leaf
+[growth]
+kind = isogonic
+initial_length = 20
+final_length = 60
+step = 4
+[sources]
+density = 0.01
+birth_distance_sources = 4
+birth_distance_veins = 4
+[veins]
+kill_distance = 2
+[texture]
+size = 64
+"""
+# Goes on until it is stopped.
+ENDLESS = """\
+[growth]
+kind = marginal
+initial_length = 50
+final_length = 1000000
+step = 0.05
+[texture]
+size = 64
+"""
+
+
+class Skip(Exception):
+    pass
+
+
+class Result:
+    def __init__(self, status, out, err):
+        self.status, self.out, self.err = status, out, err
+
+
+def environment(**changes):
+    env = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "COLUMNS", "G_MESSAGES_DEBUG")}
+    env.update(TERM="xterm", LC_ALL="C.UTF-8")
+    env.update(changes)
+    return env
+
+
+def run(*args, env=None, before=None, stdout=subprocess.PIPE):
+    done = subprocess.run([VENATION, *args], stdin=subprocess.DEVNULL, stdout=stdout, stderr=subprocess.PIPE,
+                          env=env or environment(), preexec_fn=before, timeout=TIMEOUT)
+    return Result(done.returncode, (done.stdout or b"").decode(), done.stderr.decode())
+
+
+def run_on_terminal(*args, env=None, columns=80):
+    """stderr on a terminal; the result's err is what it showed."""
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    process = subprocess.Popen([VENATION, *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=slave,
+                               env=env or environment())
+    os.close(slave)
+    shown = b""
+    while True:
+        try:
+            part = os.read(master, 65536)
+        except OSError:  # EIO: the other end is closed
+            break
+        if not part:
+            break
+        shown += part
+    out = process.stdout.read().decode()
+    os.close(master)
+    return Result(process.wait(TIMEOUT), out, shown.decode())
+
+
+def write(name, text):
+    with open(name, "w" if isinstance(text, str) else "wb") as file:
+        file.write(text)
+    return name
+
+
+def files(folder):
+    return sorted(os.path.relpath(os.path.join(d, f), folder) for d, _, names in os.walk(folder) for f in names)
+
+
+def contents(folder):
+    found = {}
+    for name in files(folder):
+        with open(os.path.join(folder, name), "rb") as file:
+            found[name] = file.read()
+    return found
+
+
+def same(found, wanted, what="value"):
+    if found != wanted:
+        raise AssertionError(f"{what}: found {found!r}, wanted {wanted!r}")
+
+
+def holds(text, part):
+    if part not in text:
+        raise AssertionError(f"no {part!r} in {text!r}")
+
+
+def lacks(text, part):
+    if part in text:
+        raise AssertionError(f"{part!r} in {text!r}")
+
+
+def check_refused(result, status, *parts):
+    """One message on stderr, nothing on stdout, nothing written."""
+    same(result.status, status, f"exit status (stderr {result.err!r})")
+    same(result.out, "", "stdout")
+    lines = result.err.splitlines()
+    if not lines or not lines[0].startswith("venation: ") or len(lines) > 2:
+        raise AssertionError(f"not one message: {result.err!r}")
+    for part in parts:
+        holds(result.err, part)
+    if os.path.exists("out"):
+        raise AssertionError(f"left behind: {os.listdir('out')}")
+
+
+def check_set(setting, *parts):
+    write("small.ini", SMALL)
+    check_refused(run("grow", "small.ini", "--set", setting), 3, *parts)
+
+
+def check_file(text, *parts):
+    write("bad.ini", text)
+    check_refused(run("grow", "bad.ini"), 3, *parts)
+
+
+# --- verbs and options -------------------------------------------------------------------------------------------
+
+def test_version():
+    result = run("--version")
+    same(result.status, 0)
+    if not re.fullmatch(r"venation \d+\.\d+\.\d+\S*\n", result.out):
+        raise AssertionError(result.out)
+
+
+def test_help():
+    overview = run("help")
+    same(overview.status, 0)
+    same(run("--help").out, overview.out)
+    for verb in ("grow", "params", "help"):
+        holds(overview.out, verb)
+        result = run("help", verb)
+        same(result.status, 0)
+        same(result.err, "")
+        holds(result.out, f"venation {verb}")
+        same(run(verb, "--help").out, result.out, "VERB --help")
+    longest = max(len(line) for line in run("help", "grow").out.splitlines())
+    if longest > 100:
+        raise AssertionError(f"a line of {longest} columns")
+
+
+def test_usage_no_verb():
+    result = run()
+    same((result.status, result.out), (2, ""))
+    holds(result.err, "Usage")
+
+
+def test_usage_unknown_verb():
+    check_refused(run("gorw", "x.ini"), 2, "gorw", "did you mean 'grow'?")
+    check_refused(run("help", "parms"), 2, "did you mean 'params'?")
+    check_refused(run("--verbose"), 2, "--verbose")
+    check_refused(run("\x1b[31m"), 2)
+
+
+def test_usage_grow():
+    write("small.ini", SMALL)
+    check_refused(run("grow"), 2, "missing")
+    check_refused(run("grow", "small.ini", "other.ini"), 2)
+    check_refused(run("grow", "small.ini", "--sed", "3"), 2, "did you mean --seed?")
+    check_refused(run("grow", "small.ini", "-x"), 2)
+    check_refused(run("grow", "small.ini", "--seed"), 2)
+    for bad in ("", "x", "-3", "1.5", "0x", "0xg", "18446744073709551616", "1e3", " 1"):
+        check_refused(run("grow", "small.ini", f"--seed={bad}"), 2, "--seed", "whole number")
+    for bad in ("-1", "1025", "two"):
+        check_refused(run("grow", "small.ini", "--threads", bad), 2, "--threads")
+    for bad in ("-1", "x", "4294967296"):
+        check_refused(run("grow", "small.ini", "--every", bad), 2, "--every")
+    check_refused(run("grow", "small.ini", "--every", "5", "--frames", "gif"), 2, "svg or maps")
+    check_refused(run("grow", "small.ini", "--frames", "svg"), 2, "--every")
+    check_refused(run("grow", "small.ini", "--set", "veins.pattern"), 2, "section.key=value")
+    for bad in ("a/b", "", ".hidden", "a\nb"):
+        check_refused(run("grow", "small.ini", "--name", bad), 2, "--name")
+    check_refused(run("grow", "small.ini", "-o", ""), 2, "--output")
+
+
+def test_usage_params():
+    check_refused(run("params", "veins.kil_distance"), 2, "did you mean 'veins.kill_distance'?")
+    check_refused(run("params", "--format=jsn"), 2, "did you mean 'json'?")
+    check_refused(run("params", "veins", "width"), 2)
+    check_refused(run("params", "veins", "--format=man"), 2)
+    check_refused(run("params", "--json", "--format=ini"), 2)
+
+
+# --- bad input ---------------------------------------------------------------------------------------------------
+
+def test_input_no_file():
+    check_refused(run("grow", "poplar.ini"), 3, "poplar.ini", "No such file")
+    os.mkdir("params")
+    write("params/poplar.ini", SMALL)
+    check_refused(run("grow", "poplar"), 3, "did you mean params/poplar.ini?")
+    check_refused(run("grow", "poplar.ini"), 3, "did you mean params/poplar.ini?")
+    check_refused(run("grow", "params"), 3, "Is a directory")
+
+
+def test_input_unreadable_file():
+    write("closed.ini", SMALL)
+    os.chmod("closed.ini", 0)
+    if os.access("closed.ini", os.R_OK):
+        raise Skip("this user may read every file")
+    check_refused(run("grow", "closed.ini"), 3, "closed.ini", "Permission denied")
+
+
+def test_input_no_key_file():
+    check_file(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "bad.ini", "not a text file")
+    check_file(b"[leaf]\ntitle = \xff\n", "bad.ini:2", "UTF-8")
+    check_file("\n" * (2 << 20), "1 MiB")
+    check_file("[veins\n", "bad.ini:1")
+    check_file("[veins]\nkill distance 3\n", "bad.ini:2", "key = value")
+    check_file("kill_distance = 3\n", "bad.ini:1", "section")
+
+
+def test_input_unknown_names():
+    check_file("[veins]\nkil_distance = 3\n", "bad.ini:2: [veins] kil_distance", "did you mean 'kill_distance'?")
+    check_file("[sources]\nkill_distance = 3\n", "bad.ini:2", "[veins]")
+    check_file("[vein]\n", "bad.ini:1", "did you mean [veins]?")
+    check_file("[veins]\npattern = open\npattern = closed\n", "bad.ini:3", "line 2")
+    check_set("veins.kil_distance=3", "--set", "did you mean 'veins.kill_distance'?")
+    check_set("kill_distance=3", "did you mean 'veins.kill_distance'?")
+    check_set("nothing.of_the_kind=3", "sections")
+
+
+def test_input_values():
+    check_file("[veins]\n\nkill_distance = -3\n",
+               "bad.ini:3: [veins] kill_distance = -3: must be a number from 0 to 1e6 (segments)")
+    for bad in ("nan", "inf", "-inf", "1e999", "0x10", "3x", "", "1,5"):
+        check_set(f"veins.kill_distance={bad}", "veins.kill_distance", "must be a number from 0 to 1e6")
+    check_set("veins.pattern=opne", "open or closed", "did you mean 'open'?")
+    check_set("texture.vein_colour=green", "#rrggbb")
+    check_set("veins.seeds=nan,0", "points")
+    check_set("texture.size=64.5", "whole number")
+
+
+def test_input_sizes():
+    write("small.ini", SMALL)
+    for bad in ("0", "1000000", "-5", "99999999999999999999"):
+        check_refused(run("grow", "small.ini", "--size", bad), 3, "texture.size", "from 16 to 16384")
+
+
+def test_input_maps():
+    write("small.ini", SMALL)
+    check_refused(run("grow", "small.ini", "--maps", "base_colour"), 3, "base_colour")
+
+
+def test_input_outline():
+    check_set("outline.file=missing.svg", "missing.svg")
+    check_set("outline.path=M0,0 L1,1 L1,0 L0,1 Z", "outline")
+    check_set("outline.path=M0,0 L1,1 L1,", "outline")
+    check_set("outline.path=zebra", "outline")
+    write("outline.svg", "no drawing at all")
+    check_set("outline.file=outline.svg", "outline.svg")
+    write("outline.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>")
+    check_set("outline.file=outline.svg", "outline.svg")
+
+
+def test_input_empty_blade():
+    check_set("outline.path=M0,0 Z", "outline")
+    check_set("outline.path=M0,0 L0,1 L0,0 Z", "outline")
+
+
+def test_input_seeds_outside():
+    check_set("veins.seeds=5,5", "seeds")
+
+
+def test_input_sources_file():
+    write("small.ini", SMALL)
+    result = run("grow", "small.ini", "--set", "sources.placement=list", "--set", "sources.file=missing.csv")
+    check_refused(result, 3, "missing.csv")
+
+
+# --- growing -----------------------------------------------------------------------------------------------------
+
+def test_grow():
+    write("small.ini", SMALL)
+    result = run("grow", "small.ini")
+    same((result.status, result.out), (0, ""), result.err)
+    found = files("out/small")
+    for suffix in (".json", ".svg", ".graphml", "_base_color.png", "_opacity.png", "_height.png"):
+        name = "small" + suffix
+        if name not in found:
+            raise AssertionError(f"no {name} among {found}")
+    if any(name.startswith(".") for name in found):
+        raise AssertionError(f"left over: {found}")
+    holds(result.err, "Small leaf")
+    holds(result.err, "out/small")
+    if "\r" in result.err or "\x1b" in result.err:
+        raise AssertionError(f"progress without a terminal: {result.err!r}")
+
+
+def test_grow_quiet_json():
+    write("small.ini", SMALL)
+    title = "Ahorn \u00e4 \"x\""
+    result = run("grow", "small.ini", "--json", "--quiet", "--seed", "0xff", f"--set=leaf.title={title}", "--name", "b")
+    same((result.status, result.err), (0, ""))
+    record = json.loads(result.out)
+    with open("out/b/b.json", encoding="utf-8") as file:
+        same(json.load(file), record, "the record's file")
+    holds(result.out, "255")
+    holds(json.dumps(record, ensure_ascii=False), json.dumps(title, ensure_ascii=False))
+    lacks(result.out, os.getcwd())
+
+
+def test_grow_same_bytes():
+    write("small.ini", SMALL)
+    same(run("grow", "small.ini", "-o", "a", "--threads", "1").status, 0)
+    same(run("grow", "small.ini", "-o", "b/c/", "--threads", "3").status, 0)
+    if contents("a") != contents("b/c"):
+        raise AssertionError("equal runs differ")
+    same(run("grow", "small.ini", "-o", "d", "--seed", "2").status, 0)
+    if contents("a")["small.graphml"] == contents("d")["small.graphml"]:
+        raise AssertionError("another seed, the same network")
+
+
+def test_grow_maps():
+    write("small.ini", SMALL)
+    same(run("grow", "small.ini", "--maps", "height,opacity", "--size", "32", "--set", "texture.exr=none").status, 0)
+    maps = [name for name in files("out/small") if name.endswith(".png") and "vein" not in name]
+    same(maps, ["small_height.png", "small_opacity.png"])
+    with open("out/small/small_height.png", "rb") as file:
+        same(struct.unpack(">II", file.read(24)[16:]), (32, 32), "size")
+
+
+def test_grow_frames():
+    write("small.ini", SMALL)
+    same(run("grow", "small.ini", "--every", "5", "--maps", "none").status, 0)
+    frames = files("out/small/frames")
+    if "small_000005.svg" not in frames or "small_000010.svg" not in frames:
+        raise AssertionError(frames)
+    same(run("grow", "small.ini", "--every", "5", "--frames", "maps", "--maps", "opacity", "-o", "m").status, 0)
+    if not any(name.startswith("small_000005") and name.endswith(".png") for name in files("m/frames")):
+        raise AssertionError(files("m/frames"))
+
+
+def test_grow_from_defaults_file():
+    write("all.ini", run("params", "--format=ini").out)
+    quick = ("growth.initial_length=20", "growth.final_length=60", "veins.max_steps=30", "texture.size=32")
+    same(run("grow", "all.ini", *[f"--set={setting}" for setting in quick]).status, 0)
+
+
+# --- what can go wrong while writing -----------------------------------------------------------------------------
+
+def test_write_no_folder():
+    write("small.ini", SMALL)
+    write("file", "")
+    for target in ("file", "file/below"):
+        result = run("grow", "small.ini", "-o", target)
+        check_refused(result, 1, "file", "Not a directory")
+    with open("file", encoding="utf-8") as file:
+        same(file.read(), "")
+    os.makedirs("out/small/small.svg")
+    result = run("grow", "small.ini")
+    same(result.status, 1)
+    holds(result.err, "small.svg")
+    same(files("out"), [], "left over")
+
+
+def test_write_file_limit():
+    write("small.ini", SMALL)
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))
+    result = run("grow", "small.ini", before=limit)
+    check_refused(result, 1, "out/small/small", "File too large")
+
+
+def test_write_failure_keeps_old():
+    write("small.ini", SMALL)
+    same(run("grow", "small.ini").status, 0)
+    old = contents("out")
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))
+    same(run("grow", "small.ini", "--seed", "2", before=limit).status, 1)
+    if contents("out") != old:
+        raise AssertionError("an earlier run's files changed")
+
+
+def test_write_full_disk():
+    write("small.ini", SMALL)
+    os.mkdir("disk")
+    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=12k", "tmpfs", "disk"], check=False,
+                                           stderr=subprocess.DEVNULL).returncode != 0:
+        raise Skip("can't mount a small disk")
+    try:
+        result = run("grow", "small.ini", "-o", "disk/small")
+        check_refused(result, 1, "disk/small", "No space left")
+        same(os.listdir("disk"), [], "left over")
+    finally:
+        subprocess.run(["umount", "disk"], check=True)
+
+
+def test_write_full_stdout():
+    write("small.ini", SMALL)
+    with open("/dev/full", "wb") as full:
+        result = run("params", stdout=full)
+        same(result.status, 1)
+        holds(result.err, "No space left")
+        same(run("grow", "small.ini", "--json", stdout=full).status, 1)
+
+
+def start(*args):
+    """A run to be stopped. SIGINT may be ignored by the one who runs the tests (in the background); undo that."""
+    return subprocess.Popen([VENATION, *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            env=environment(), preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+
+
+def wait_for_frame(process):
+    """Until the run has written its first frame, so is in the midst of growing."""
+    end = time.monotonic() + TIMEOUT / 2
+    while time.monotonic() < end:
+        if process.poll() is not None:
+            raise AssertionError(f"ended by itself: {process.returncode} {process.stderr.read()!r}")
+        if any(name.endswith(".svg") for name in files("work")):
+            return
+        time.sleep(0.02)
+    raise AssertionError("no frame in time")
+
+
+def check_stopped(number, status):
+    os.makedirs("work")
+    write("endless.ini", ENDLESS)
+    process = start("grow", "endless.ini", "-o", "work/a/b", "--every", "3")
+    try:
+        wait_for_frame(process)
+        process.send_signal(number)
+        begun = time.monotonic()
+        out, err = process.communicate(timeout=TIMEOUT / 2)
+    finally:
+        process.kill()
+    same((process.returncode, out), (status, b""), f"status and stdout (stderr {err!r})")
+    holds(err.decode(), "nothing was written")
+    same(os.listdir("work"), [], "left over")
+    if time.monotonic() - begun > 10:
+        raise AssertionError("took too long to stop")
+
+
+def test_stop_ctrl_c():
+    check_stopped(signal.SIGINT, 130)
+
+
+def test_stop_term():
+    check_stopped(signal.SIGTERM, 143)
+
+
+def test_stop_while_writing():
+    os.makedirs("work")
+    write("small.ini", SMALL)
+    process = start("grow", "small.ini", "-o", "work/a", "--size", "2048")
+    try:
+        while process.poll() is None and not any(name.endswith((".png", ".svg", ".exr")) for name in files("work")):
+            time.sleep(0.005)
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=TIMEOUT / 2)
+    finally:
+        process.kill()
+    if process.returncode == 0:
+        raise Skip("it had written all before it could be stopped")
+    same(process.returncode, 143, f"exit status (stderr {err!r})")
+    same(os.listdir("work"), [], "left over")
+
+
+# --- terminal ----------------------------------------------------------------------------------------------------
+
+def test_terminal_progress():
+    write("small.ini", SMALL)
+    result = run_on_terminal("grow", "small.ini", "--json")
+    same(result.status, 0)
+    json.loads(result.out)
+    holds(result.err, "\r")
+    holds(result.err, "\x1b[")
+    holds(result.err, "\u2591")  # an empty cell of the bar
+    holds(result.err, "%")
+
+
+def test_terminal_plain():
+    write("small.ini", SMALL)
+    for env in (environment(NO_COLOR="1"), environment(TERM="dumb")):
+        result = run_on_terminal("grow", "small.ini", env=env)
+        same(result.status, 0)
+        holds(result.err, "%")
+        lacks(result.err, "\x1b")
+    holds(run_on_terminal("grow", "small.ini", env=environment(NO_COLOR="")).err, "\x1b[")
+    result = run_on_terminal("grow", "small.ini", env=environment(LC_ALL="C", NO_COLOR="1"))
+    lacks(result.err.split("\n")[0], "\u2591")
+    holds(result.err, "..")
+
+
+def test_terminal_narrow():
+    write("small.ini", SMALL)
+    shown = run_on_terminal("grow", "small.ini", env=environment(NO_COLOR="1"), columns=24).err
+    for line in shown.split("\n")[0].split("\r")[:-2]:  # then comes the summary
+        if len(line) >= 24:
+            raise AssertionError(f"wraps at 24 columns: {line!r}")
+
+
+def test_terminal_quiet():
+    write("small.ini", SMALL)
+    same(run_on_terminal("grow", "small.ini", "--quiet").err, "")
+
+
+# --- texts made from the tables ----------------------------------------------------------------------------------
+
+def keys():
+    return [p["key"] for p in json.loads(run("params", "--json").out)]
+
+
+def test_params_json():
+    parameters = json.loads(run("params", "--format=json").out)
+    if len(parameters) < 20 or not all(p["doc"] and p["allowed"] and "default" in p for p in parameters):
+        raise AssertionError(parameters)
+    pattern = json.loads(run("params", "veins.pattern", "--json").out)
+    same([(p["key"], p["choices"]) for p in pattern], [("veins.pattern", ["open", "closed"])])
+
+
+def test_params_text():
+    everything = run("params").out
+    for key in keys():
+        holds(everything, f"{key} =")
+    longest = max(len(line) for line in everything.splitlines() if "=" not in line)
+    if longest > 100:
+        raise AssertionError(f"a line of {longest} columns")
+    section = run("params", "veins").out
+    holds(section, "veins.kill_distance = 1")
+    lacks(section, "width.exponent =")
+    holds(run("params", "kill_distance").out, "veins.kill_distance = 1")
+
+
+def test_params_ini():
+    text = run("params", "--format=ini").out
+    for key in keys():
+        if not re.search(rf"^{key.split('.')[1]} =", text, re.M):
+            raise AssertionError(f"no {key}")
+
+
+def test_params_markdown():
+    text = run("params", "--format=markdown").out
+    rows = [line for line in text.splitlines() if line.startswith("| `")]
+    same(len(rows), len(keys()), "rows")
+    for line in rows:
+        same(len(re.split(r"(?<!\\)\|", line)), 6, f"cells of {line!r}")
+
+
+def test_man():
+    page = write("venation.1", run("params", "--format=man").out)
+    with open(page, encoding="ascii") as file:
+        source = file.read().replace("\\-", "-")
+    for key in keys():
+        holds(source, f"\\fB{key}\\fR")
+    for option in re.findall(r"--[a-z]+", run("help", "grow").out):
+        holds(source, option)
+    if not shutil.which("man"):
+        raise Skip("no man")
+    for locale in ("C", "C.UTF-8"):
+        env = environment(LC_ALL=locale, MANWIDTH="80", MANPAGER="cat")
+        shown = subprocess.run(["man", "--warnings", "-l", page], env=env,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        same((shown.returncode, shown.stderr), (0, b""), f"man in {locale}")
+        holds(shown.stdout.decode(errors="replace"), "veins.kill_distance")
+
+
+def completions(line):
+    program = 'source ./completion; COMP_LINE=$1 COMP_POINT=${#1}; _venation; printf "%s\\n" "${COMPREPLY[@]}"'
+    done = subprocess.run(["bash", "--norc", "-c", program, "bash", line], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, check=False)
+    same(done.stderr, b"", f"stderr of completing {line!r}")
+    return done.stdout.decode().split()
+
+
+def test_completion():
+    if not shutil.which("bash"):
+        raise Skip("no bash")
+    write("completion", run("params", "--format=bash").out)
+    done = subprocess.run(["bash", "-n", "completion"], stderr=subprocess.PIPE, check=False)
+    same((done.returncode, done.stderr), (0, b""))
+    write("leaf.ini", SMALL)
+    write("leaf.txt", "")
+    write("outline.svg", "")
+    os.mkdir("leaves")
+    cases = {
+        "venation ": ["grow", "params", "help", "--version", "--help"],
+        "venation gr": ["grow"],
+        "venation help p": ["params"],
+        "venation grow le": ["leaves", "leaf.ini"],
+        "venation grow leaf.ini --se": ["--seed", "--set"],
+        "venation grow leaf.ini --set veins.k": ["veins.kill_distance="],
+        "venation grow leaf.ini --set veins.pattern=": ["open", "closed"],
+        "venation grow leaf.ini --set veins.pattern=cl": ["closed"],
+        "venation grow leaf.ini --set=veins.pattern=cl": ["closed"],
+        "venation grow leaf.ini --set outline.mirror=": ["yes", "no"],
+        "venation grow leaf.ini --set outline.file=outl": ["outline.svg"],
+        "venation grow leaf.ini --set texture.maps=he": ["height"],
+        "venation grow leaf.ini --maps he": ["height"],
+        "venation grow leaf.ini --maps opacity,he": ["opacity,height"],
+        "venation grow leaf.ini --frames ": ["svg", "maps"],
+        "venation grow leaf.ini -o lea": ["leaves"],
+        "venation grow leaf.ini --seed ": [],
+        "venation params --format=ma": ["markdown", "man"],
+        "venation params veins.pat": ["veins.pattern"],
+        "venation params vei": ["veins"] + [key for key in keys() if key.startswith("vei")],
+    }
+    for line, wanted in cases.items():
+        same(sorted(completions(line)), sorted(wanted), f"completing {line!r}")
+    options = completions("venation grow leaf.ini --")
+    for option in re.findall(r"(?<= )--[a-z]+(?=[ =])", run("help", "grow").out.split("Files:")[0]):
+        if option not in options:
+            raise AssertionError(f"no {option} among {options}")
+
+
+# -----------------------------------------------------------------------------------------------------------------
+
+def main():
+    tests = [(name[5:], test) for name, test in globals().items() if name.startswith("test_")]
+    failed = 0
+    print(f"1..{len(tests)}", flush=True)
+    for number, (name, test) in enumerate(tests, 1):
+        with tempfile.TemporaryDirectory(prefix="venation-") as folder:
+            os.chdir(folder)
+            try:
+                test()
+                line = f"ok {number} - {name}"
+            except Skip as reason:
+                line = f"ok {number} - {name} # SKIP {reason}"
+            except Exception as problem:  # one that fails must not stop the rest
+                failed += 1
+                line = f"not ok {number} - {name}\n# {type(problem).__name__}: " + str(problem).replace("\n", "\n# ")
+            os.chdir("/")
+        print(line, flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

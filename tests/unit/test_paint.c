@@ -1,0 +1,594 @@
+/* Painting: coverage, distances, labels and surfaces against independent truth. */
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "geom/random.h"
+#include "image/paint.h"
+#include "image/painter.h"
+#include "sim/network.h"
+
+static double uniform(uint64_t *counter)
+{
+    double v[2];
+    random_pair(99, 0, 0, (*counter)++, v);
+    return v[0];
+}
+
+/* ---- networks ---- */
+
+static Network *net_new(uint32_t nodes, uint32_t edges, const Vec2 *margin, uint32_t n_margin)
+{
+    Network *net = network_new(nodes, edges);
+    net->n_steps = 100;
+    net->margin = polygon_new(margin, n_margin);
+    for (uint32_t e = 0; e < edges; e++) {
+        net->order[e] = 1;
+        net->flow[e] = 1.0;
+    }
+    return net;
+}
+
+static const Vec2 square[4] = {{-20.0, 0.0}, {20.0, 0.0}, {20.0, 40.0}, {-20.0, 40.0}};
+
+/* Straight veins of one edge each. */
+static Network *net_straws(uint32_t n, double width, uint64_t seed)
+{
+    Network *net = net_new(2 * n, n, square, 4);
+    uint64_t c = seed * 1000;
+    for (uint32_t i = 0; i < 2 * n; i++)
+        net->node[i] = vec2(uniform(&c) * 36.0 - 18.0, uniform(&c) * 36.0 + 2.0);
+    for (uint32_t e = 0; e < n; e++) {
+        net->tail[e] = 2 * e;
+        net->head[e] = 2 * e + 1;
+        net->vein[e] = e;
+        net->birth[e] = e;
+        net->order[e] = (uint8_t)(1 + e % 5);
+        net->width[e] = width * (0.2 + 2.0 * uniform(&c));
+    }
+    net->n_veins = n;
+    return net;
+}
+
+/* A tree of winding, tapering veins: n of `length` segments each, every one but the first leaving an earlier one. */
+static Network *net_tree(uint32_t n, uint32_t length, double width, uint64_t seed)
+{
+    uint32_t edges = n * length;
+    Network *net = net_new(edges + 1, edges, square, 4);
+    uint64_t c = seed * 1000000;
+    net->node[0] = vec2(0.0, 0.5);
+    for (uint32_t v = 0, e = 0; v < n; v++) {
+        uint32_t at = v == 0 ? 0 : (uint32_t)(uniform(&c) * e);
+        double w = v == 0 ? width : MIN(width, at > 0 ? net->width[at - 1] : width) * (0.3 + 0.5 * uniform(&c));
+        Vec2 d = v == 0 ? vec2(0.0, 1.0) : vec2(uniform(&c) - 0.5, uniform(&c) - 0.4);
+        for (uint32_t i = 0; i < length; i++, e++) {
+            d = vec_add(d, vec2(0.4 * (uniform(&c) - 0.5), 0.4 * (uniform(&c) - 0.5)));
+            d = vec_scale(d, 1.0 / sqrt(vec_norm2(d)));
+            net->node[e + 1] = vec_add(net->node[at], d);
+            net->tail[e] = at;
+            net->head[e] = at = e + 1;
+            net->vein[e] = v;
+            net->birth[e] = (v + i) % 100;
+            net->order[e] = (uint8_t)(v == 0 ? 1 : 2 + v % 4);
+            net->width[e] = w * (1.0 - 0.6 * i / length);
+        }
+    }
+    net->n_veins = n;
+    return net;
+}
+
+static Painter *painter_at(const Network *net, const Frame *frame, unsigned threads)
+{
+    PaintStyle style = paint_style_default();
+    style.threads = threads;
+    style.seed = 5;
+    return painter_new(net, frame, &style);
+}
+
+static double total(const float *px, gsize n)
+{
+    double sum = 0.0;
+    for (gsize i = 0; i < n; i++)
+        sum += (double)px[i];
+    return sum;
+}
+
+/* ---- strokes ---- */
+
+/* The distance is the least over the axis of |p - c(t)| - r(t), which is convex in t. */
+static double slow_distance(const Capsule *k, Vec2 p)
+{
+    double lo = 0.0, hi = 1.0;
+    for (int i = 0; i < 100; i++) {
+        double a = lo + (hi - lo) / 3.0, b = hi - (hi - lo) / 3.0;
+        double fa = vec_dist(p, vec_lerp(k->a, k->b, a)) - capsule_radius(k, a);
+        double fb = vec_dist(p, vec_lerp(k->a, k->b, b)) - capsule_radius(k, b);
+        if (fa < fb)
+            hi = b;
+        else
+            lo = a;
+    }
+    return vec_dist(p, vec_lerp(k->a, k->b, lo)) - capsule_radius(k, lo);
+}
+
+static void test_capsule(void)
+{
+    uint64_t c = 0;
+    for (int i = 0; i < 3000; i++) {
+        Capsule k = capsule_new(vec2(uniform(&c), uniform(&c)), uniform(&c), vec2(3.0 * uniform(&c), uniform(&c)), uniform(&c));
+        Vec2 p = vec2(4.0 * uniform(&c) - 0.5, 2.0 * uniform(&c) - 0.5);
+        double t, d = capsule_distance(&k, p, &t);
+        g_assert_cmpfloat(fabs(d - slow_distance(&k, p)), <, 1e-9);
+        Span s = capsule_chord(&k, p.y);
+        if (d < -1e-9)
+            g_assert_true(s.lo <= p.x && p.x <= s.hi);
+        if (d > 1e-9)
+            g_assert_true(p.x < s.lo || p.x > s.hi);
+    }
+}
+
+/* Coverage of the pixel at x, y by brute force. */
+static double sampled(const Strokes *s, uint32_t x, uint32_t y, int n)
+{
+    int hit = 0;
+    double t;
+    const Stroke *near[64];
+    uint32_t m = 0;
+    for (uint32_t i = 0; i < s->n && m < 64; i++)
+        if (capsule_distance(&s->v[i].shape, vec2(x + 0.5, y + 0.5), &t) < 0.75)
+            near[m++] = &s->v[i];
+    for (int j = 0; j < n && m > 0; j++)
+        for (int i = 0; i < n; i++) {
+            bool in = false;
+            for (uint32_t k = 0; k < m && !in; k++)
+                in = capsule_distance(&near[k]->shape, vec2(x + (i + 0.5) / n, y + (j + 0.5) / n), &t) <= 0.0;
+            hit += in;
+        }
+    return (double)hit / (n * n);
+}
+
+static void check_coverage(Network *net, double scale)
+{
+    Frame f = {40, 40, scale, vec2(-20.0 / scale, 20.0 + 20.0 / scale)};
+    Painter *p = painter_at(net, &f, 2);
+    const float *cover = painter_cover(p);
+    double sum = 0.0;
+    for (uint32_t y = 0; y < 40; y++)
+        for (uint32_t x = 0; x < 40; x++) {
+            /* 64 x 64 samples err by 1/128 along a straight edge that lies along the grid, and two may do so */
+            double error = (double)cover[y * 40 + x] - sampled(p->strokes, x, y, 64);
+            g_assert_cmpfloat(fabs(error), <, 0.016);
+            sum += error;
+        }
+    g_assert_cmpfloat(fabs(sum / 1600.0), <, 1e-4);
+    painter_free(p);
+    network_free(net);
+}
+
+static void test_coverage(void)
+{
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        check_coverage(net_straws(60, 1.0, seed), 1.0);   /* crossings, about a pixel wide */
+        check_coverage(net_straws(200, 0.2, seed), 1.0);  /* many in a pixel, sub-pixel widths */
+        check_coverage(net_straws(20, 5.0, seed), 3.0);   /* wide */
+        check_coverage(net_tree(30, 20, 0.8, seed), 1.0); /* joints, tapers, branches */
+        check_coverage(net_tree(20, 25, 3.0, seed), 2.0); /* wider than its segments are long */
+        check_coverage(net_tree(6, 30, 0.5, seed), 12.0); /* smoothed */
+        check_coverage(net_tree(60, 20, 0.4, seed), 0.25);
+    }
+}
+
+/* One straight vein of many edges: area and width at every size, from far below a pixel. */
+static void test_capsule_area(void)
+{
+    Network *net = net_new(31, 30, square, 4);
+    for (uint32_t i = 0; i <= 30; i++)
+        net->node[i] = vec2(-12.0 + 0.7 * i, 5.0 + 0.6 * i);
+    for (uint32_t e = 0; e < 30; e++) {
+        net->tail[e] = e;
+        net->head[e] = e + 1;
+        net->width[e] = 1.5;
+    }
+    net->n_veins = 1;
+    double length = 30.0 * sqrt(0.49 + 0.36), want = 1.5 * length + acos(-1.0) * 1.5 * 1.5 / 4.0;
+    static const uint32_t size[] = {8, 16, 64, 256, 4096};
+    for (int i = 0; i < 5; i++) {
+        Frame f = frame_fit(net->margin->box, size[i], true, 0.02);
+        Painter *p = painter_at(net, &f, 0);
+        double area = total(painter_cover(p), (gsize)f.width * f.height) / (f.scale * f.scale);
+        g_assert_cmpfloat(fabs(area / want - 1.0), <, 1e-4);
+        painter_free(p);
+    }
+    network_free(net);
+}
+
+/* A vein of a tenth of a pixel darkens each column by a tenth. */
+static void test_thin_vein(void)
+{
+    Network *net = net_new(2, 1, square, 4);
+    net->node[0] = vec2(-19.0, 10.3);
+    net->node[1] = vec2(19.0, 14.1);
+    net->head[0] = 1;
+    net->width[0] = 0.1;
+    net->n_veins = 1;
+    Frame f = {40, 40, 1.0, {-20.0, 40.0}};
+    Painter *p = painter_at(net, &f, 1);
+    const float *cover = painter_cover(p);
+    double slant = sqrt(1.0 + 0.01);
+    for (uint32_t x = 2; x < 38; x++) {
+        double sum = 0.0;
+        for (uint32_t y = 0; y < 40; y++)
+            sum += (double)cover[y * 40 + x];
+        g_assert_cmpfloat(fabs(sum - 0.1 * slant), <, 1e-5);
+    }
+    painter_free(p);
+    network_free(net);
+}
+
+static void test_area_over_sizes(void)
+{
+    Network *net = net_tree(120, 18, 1.2, 4);
+    double area[2];
+    for (int i = 0; i < 2; i++) {
+        Frame f = frame_fit((Box2){-22.0, -2.0, 22.0, 42.0}, i == 0 ? 256 : 2048, true, 0.0);
+        Painter *p = painter_at(net, &f, 0);
+        area[i] = total(painter_cover(p), (gsize)f.width * f.height) / (f.scale * f.scale);
+        painter_free(p);
+    }
+    g_assert_cmpfloat(fabs(area[0] / area[1] - 1.0), <, 1e-3);
+    network_free(net);
+}
+
+/* Between two nodes the curve stays near the chord and passes through the nodes. */
+static void test_strokes(void)
+{
+    Network *net = net_tree(10, 30, 0.5, 8);
+    Frame f = {2000, 2000, 50.0, {-20.0, 40.0}};
+    Strokes *s = strokes_new(net, &f, (StrokeTolerance){0.02, 0.0});
+    for (uint32_t i = 0; i < net->n_nodes; i++) {
+        Vec2 q = vec2((net->node[i].x + 20.0) * 50.0, (40.0 - net->node[i].y) * 50.0);
+        double least = 1e9;
+        for (uint32_t k = 0; k < s->n; k++) {
+            Capsule axis = capsule_new(s->v[k].shape.a, 0.0, s->v[k].shape.b, 0.0);
+            double t;
+            least = MIN(least, capsule_distance(&axis, q, &t));
+        }
+        g_assert_cmpfloat(least, <, 0.03);
+    }
+    for (uint32_t k = 0; k < s->n; k++) { /* no corners: pieces of one vein turn little */
+        if (k > 0 && s->v[k].vein == s->v[k - 1].vein)
+            g_assert_cmpfloat(vec_dot(s->v[k].shape.d, s->v[k - 1].shape.d), >, 0.97);
+    }
+    strokes_free(s);
+    network_free(net);
+}
+
+/* ---- blade ---- */
+
+static void test_opacity(void)
+{
+    Vec2 star[10];
+    for (int i = 0; i < 10; i++) {
+        double r = i % 2 == 0 ? 18.0 : 7.3, a = i * acos(-1.0) / 5.0 + 0.1;
+        star[i] = vec2(r * cos(a), 20.0 + r * sin(a));
+    }
+    Network *net = net_new(1, 0, star, 10);
+    static const uint32_t size[] = {17, 100, 1000};
+    for (int i = 0; i < 3; i++) {
+        Frame f = frame_fit(net->margin->box, size[i], i == 1, 0.05);
+        Painter *p = painter_at(net, &f, 3);
+        Plane *o = painter_paint(p, MAP_OPACITY);
+        double area = total(o->px, (gsize)o->width * o->height) / (f.scale * f.scale);
+        g_assert_cmpfloat(fabs(area / net->margin->area - 1.0), <, 1e-6);
+        plane_free(o);
+        painter_free(p);
+    }
+    /* part of the star, against samples */
+    Frame f = {30, 30, 1.3, {-3.0, 30.0}};
+    Painter *p = painter_at(net, &f, 3);
+    Plane *o = painter_paint(p, MAP_OPACITY);
+    for (uint32_t y = 0; y < 30; y++)
+        for (uint32_t x = 0; x < 30; x++) {
+            int hit = 0;
+            for (int k = 0; k < 64 * 64; k++) {
+                double sx = x + (k % 64 + 0.5) / 64.0, sy = y + (k / 64 + 0.5) / 64.0;
+                hit += polygon_contains(net->margin, vec2(-3.0 + sx / 1.3, 30.0 - sy / 1.3));
+            }
+            g_assert_cmpfloat(fabs((double)o->px[y * 30 + x] - hit / 4096.0), <, 0.012);
+        }
+    plane_free(o);
+    painter_free(p);
+    network_free(net);
+}
+
+/* Each pixel beyond the margin has the colour of a nearest pixel of the blade, as far as the padding goes. */
+static void test_padding(void)
+{
+    Network *net = net_tree(40, 12, 1.0, 2);
+    Frame f = {90, 70, 1.2, {-30.0, 45.0}};
+    PaintStyle style = paint_style_default();
+    style.padding = 6;
+    Painter *p = painter_new(net, &f, &style);
+    Plane *c = painter_paint(p, MAP_BASE_COLOR);
+    const float *blade = painter_blade(p);
+    for (int y = 0; y < 70; y++)
+        for (int x = 0; x < 90; x++) {
+            const float *px = c->px + 3 * (y * 90 + x);
+            long best = 1000000;
+            bool same = false;
+            for (int v = 0; v < 70; v++)
+                for (int u = 0; u < 90; u++) {
+                    long d = (long)(u - x) * (u - x) + (long)(v - y) * (v - y);
+                    if (blade[v * 90 + u] <= 0.0f || d > best)
+                        continue;
+                    same = (d == best && same) || memcmp(px, c->px + 3 * (v * 90 + u), 3 * sizeof(float)) == 0;
+                    best = d;
+                }
+            if (best <= 36)
+                g_assert_true(same);
+            else
+                g_assert_true(px[0] == 0.0f && px[1] == 0.0f && px[2] == 0.0f);
+        }
+    Plane *o = painter_paint(p, MAP_OPACITY);
+    g_assert_cmpmem(o->px, 90 * 70 * sizeof(float), blade, 90 * 70 * sizeof(float));
+    plane_free(o);
+    plane_free(c);
+    painter_free(p);
+    network_free(net);
+}
+
+/* ---- data ---- */
+
+static void test_distance(void)
+{
+    for (uint64_t seed = 0; seed < 2; seed++) {
+        Network *net = net_straws(seed == 0 ? 12 : 300, 0.5, seed);
+        Frame f = frame_fit(net->margin->box, 150, true, 0.1);
+        Painter *p = painter_at(net, &f, 2);
+        Plane *d = painter_paint(p, MAP_DISTANCE);
+        for (uint32_t y = 0; y < f.height; y++)
+            for (uint32_t x = 0; x < f.width; x++) {
+                Vec2 q = vec2(f.corner.x + (x + 0.5) / f.scale, f.corner.y - (y + 0.5) / f.scale);
+                double least = 1e9;
+                for (uint32_t e = 0; e < net->n_edges; e++) {
+                    Vec2 a = net->node[net->tail[e]], b = net->node[net->head[e]], ab = vec_sub(b, a);
+                    double t = CLAMP(vec_dot(vec_sub(q, a), ab) / vec_norm2(ab), 0.0, 1.0);
+                    least = MIN(least, vec_dist(q, vec_lerp(a, b, t)) - 0.5 * net->width[e]);
+                }
+                double want = p->blade[y * f.width + x] > 0.0f ? MAX(least, 0.0) : 0.0;
+                g_assert_cmpfloat(fabs((double)d->px[y * f.width + x] - want), <, 1e-5);
+            }
+        plane_free(d);
+        painter_free(p);
+        network_free(net);
+    }
+}
+
+/* A vein far thinner than a pixel is an unbroken line of labels; widths and ages are those of the network. */
+static void test_thin_labels(void)
+{
+    Network *net = net_new(61, 60, square, 4);
+    for (uint32_t i = 0; i <= 60; i++)
+        net->node[i] = vec2(-18.0 + 0.6 * i, 10.0 + 0.25 * i + 0.002 * i * i);
+    for (uint32_t e = 0; e < 60; e++) {
+        net->tail[e] = e;
+        net->head[e] = e + 1;
+        net->width[e] = 0.02;
+        net->birth[e] = e;
+        net->vein[e] = 70000;
+        net->order[e] = 3;
+    }
+    net->n_veins = 70001;
+    static const uint32_t size[] = {40, 333, 1000};
+    for (int k = 0; k < 3; k++) {
+        Frame f = frame_fit(net->margin->box, size[k], true, 0.0);
+        Painter *p = painter_at(net, &f, 2);
+        Plane *id = painter_paint(p, MAP_VEIN_ID), *order = painter_paint(p, MAP_VEIN_ORDER);
+        Plane *width = painter_paint(p, MAP_VEIN_WIDTH), *age = painter_paint(p, MAP_AGE);
+        int last_lo = -1, last_hi = -1;
+        uint32_t first = (uint32_t)(2.5 * f.scale), end = (uint32_t)(37.5 * f.scale);
+        for (uint32_t x = first; x < end; x++) {
+            int lo = -1, hi = -1;
+            for (int y = 0; y < (int)f.height; y++) {
+                gsize at = (gsize)y * f.width + x;
+                g_assert_true(id->px[at] == 0.0f || id->px[at] == 70001.0f);
+                g_assert_true((id->px[at] != 0.0f) == (order->px[at] == 3.0f));
+                if (id->px[at] == 0.0f)
+                    continue;
+                lo = lo < 0 ? y : lo;
+                hi = y;
+                g_assert_cmpfloat(fabs((double)width->px[at] - 0.02), <, 1e-6);
+                double edge = ((x + 0.5) / f.scale - 2.0) / 0.6; /* pixels lie up to one beside their place along the vein */
+                g_assert_cmpfloat(fabs((double)age->px[at] - edge), <, 1.7 + 1.0 / f.scale);
+            }
+            g_assert_cmpint(lo, >=, 0);
+            if (last_lo >= 0) /* touches the last column's run, corners included */
+                g_assert_true(lo <= last_hi + 1 && hi >= last_lo - 1);
+            last_lo = lo;
+            last_hi = hi;
+        }
+        plane_free(id);
+        plane_free(order);
+        plane_free(width);
+        plane_free(age);
+        painter_free(p);
+    }
+    network_free(net);
+}
+
+/* Where veins cross the lower order wins; wide veins keep to their own pixels. */
+static void test_label_priority(void)
+{
+    Network *net = net_new(4, 2, square, 4);
+    net->node[0] = vec2(-15.0, 20.0);
+    net->node[1] = vec2(15.0, 20.0);
+    net->node[2] = vec2(0.0, 5.0);
+    net->node[3] = vec2(0.0, 35.0);
+    net->tail[1] = 2;
+    net->head[0] = 1;
+    net->head[1] = 3;
+    net->width[0] = 6.0;
+    net->width[1] = 4.0;
+    net->order[0] = 2;
+    net->order[1] = 1;
+    net->vein[1] = 1;
+    net->n_veins = 2;
+    Frame f = {400, 400, 10.0, {-20.0, 40.0}};
+    Painter *p = painter_at(net, &f, 2);
+    Plane *order = painter_paint(p, MAP_VEIN_ORDER);
+    const float *cover = painter_cover(p);
+    g_assert_cmpfloat(order->px[200 * 400 + 200], ==, 1.0f);
+    g_assert_cmpfloat(order->px[200 * 400 + 100], ==, 2.0f);
+    for (gsize i = 0; i < 400 * 400; i++) {
+        if (cover[i] > 0.51f)
+            g_assert_cmpfloat(order->px[i], >, 0.0f);
+        if (cover[i] < 0.49f)
+            g_assert_cmpfloat(order->px[i], ==, 0.0f);
+    }
+    plane_free(order);
+    painter_free(p);
+    network_free(net);
+}
+
+/* ---- surface ---- */
+
+/* Over a wide straight vein the surface is the arch relief * r * (1 - 0.625 u²), whose slope across is -1.25 relief u. */
+static void test_normals(void)
+{
+    static const Vec2 strip[4] = {{-50.0, 0.0}, {50.0, 0.0}, {50.0, 40.0}, {-50.0, 40.0}};
+    Network *net = net_new(2, 1, strip, 4);
+    net->node[0] = vec2(-45.0, 20.0);
+    net->node[1] = vec2(45.0, 20.0);
+    net->head[0] = 1;
+    net->width[0] = 20.0;
+    net->n_veins = 1;
+    Frame f = {500, 200, 5.0, {-50.0, 40.0}};
+    Painter *p = painter_at(net, &f, 2);
+    Plane *n = painter_paint(p, MAP_NORMAL_GL), *h = painter_paint(p, MAP_HEIGHT);
+    for (uint32_t y = 90; y < 110; y++) {
+        double up = 20.0 - (y + 0.5) / 5.0, u = fabs(up) / 10.0, slope = 1.25 * 0.6 * u * (up > 0.0 ? -1.0 : 1.0);
+        double k = 1.0 / sqrt(1.0 + slope * slope);
+        const float *px = n->px + 3 * (y * 500 + 250);
+        g_assert_cmpfloat(fabs((double)px[0] - 0.5), <, 1e-3);
+        g_assert_cmpfloat(fabs((double)px[1] - (0.5 - 0.5 * slope * k)), <, 4e-3);
+        g_assert_cmpfloat(fabs((double)px[2] - (0.5 + 0.5 * k)), <, 4e-3);
+        g_assert_cmpfloat(fabs((double)h->px[y * 500 + 250] - 6.0 * (1.0 - 0.625 * u * u)), <, 0.02);
+    }
+    g_assert_true(h->px[10 * 500 + 250] < 0.0f); /* the blade beside it is sunk */
+    g_assert_cmpfloat(h->low, <, (double)h->px[10 * 500 + 250]);
+    g_assert_cmpfloat(h->high, >=, 6.0);
+    plane_free(n);
+    plane_free(h);
+    painter_free(p);
+    network_free(net);
+}
+
+/* ---- the whole ---- */
+
+static void test_threads(void)
+{
+    Network *net = net_tree(150, 15, 1.0, 3);
+    Frame f = frame_fit(net->margin->box, 300, true, 0.02);
+    static const unsigned threads[] = {1, 2, 7};
+    Plane *first[MAP_COUNT + 1];
+    for (int k = 0; k < 3; k++) {
+        Painter *p = painter_at(net, &f, threads[k]);
+        for (int i = 0; i <= MAP_COUNT; i++) {
+            MapId id = (MapId)(k == 1 ? MAP_COUNT - i : i); /* nor does the order of the maps matter */
+            Plane *plane = id == MAP_COUNT ? painter_veins(p) : painter_paint(p, id);
+            gsize n = (gsize)plane->width * plane->height * plane->channels * sizeof(float);
+            for (gsize j = 0; j < n / sizeof(float); j++)
+                g_assert_true(isfinite(plane->px[j]));
+            if (k == 0) {
+                first[id] = plane;
+                continue;
+            }
+            g_assert_true(memcmp(plane->px, first[id]->px, n) == 0);
+            g_assert_true(plane->low == first[id]->low && plane->high == first[id]->high);
+            plane_free(plane);
+        }
+        painter_free(p);
+    }
+    for (int i = 0; i <= MAP_COUNT; i++)
+        plane_free(first[i]);
+    network_free(net);
+}
+
+/* No veins, no blade, images of one pixel: nothing breaks. */
+static void test_degenerate(void)
+{
+    for (int k = 0; k < 4; k++) {
+        Network *net = k < 2 ? net_new(1, 0, square, 4) : net_straws(5, 1.0, 1);
+        if (k >= 2)
+            net->head[0] = net->tail[0] = 0; /* an edge without length */
+        if (k % 2 != 0) {
+            polygon_free(net->margin);
+            net->margin = NULL;
+        }
+        Box2 box = {-20.0, 0.0, 20.0, 40.0};
+        Frame f = frame_fit(box, k == 2 ? 1 : 33, k == 0, 0.02);
+        Painter *p = painter_at(net, &f, 2);
+        for (int i = 0; i < MAP_COUNT; i++) {
+            Plane *plane = painter_paint(p, (MapId)i);
+            for (gsize j = 0; j < (gsize)plane->width * plane->height * plane->channels; j++)
+                g_assert_true(isfinite(plane->px[j]));
+            g_assert_cmpfloat(plane->high, >, plane->low);
+            plane_free(plane);
+        }
+        painter_free(p);
+        network_free(net);
+    }
+}
+
+static void test_frame(void)
+{
+    Box2 box = {-30.0, 0.0, 10.0, 100.0};
+    Frame s = frame_fit(box, 500, true, 0.02), b = frame_fit(box, 500, false, 0.02);
+    g_assert_cmpuint(s.width, ==, 500);
+    g_assert_cmpuint(s.height, ==, 500);
+    g_assert_cmpuint(b.width, ==, 212);
+    g_assert_cmpuint(b.height, ==, 500);
+    g_assert_cmpfloat(fabs(s.scale - 4.8), <, 1e-12);
+    g_assert_cmpfloat(fabs(s.corner.x + 250.0 / 4.8 + 10.0), <, 1e-9);
+    g_assert_cmpfloat(fabs((s.corner.y - 100.0) * s.scale - 10.0), <, 1e-9);
+    g_assert_cmpfloat(fabs((box.x0 - b.corner.x) * b.scale - 10.0), <, 1e-9);
+    Frame none = frame_fit(box_empty(), 16, false, 0.0);
+    g_assert_cmpuint(none.width, ==, 16);
+}
+
+static void test_infos(void)
+{
+    for (int i = 0; i < MAP_COUNT; i++) {
+        const MapInfo *info = paint_map_info((MapId)i);
+        g_assert_cmpint(paint_map_find(info->name), ==, i);
+        g_assert_nonnull(info->doc);
+    }
+    g_assert_cmpint(paint_map_find("basecolor"), ==, -1);
+    float c[3];
+    paint_colour(0xff8000, c);
+    g_assert_cmpfloat(c[0], ==, 1.0f);
+    g_assert_cmpfloat(fabs((double)c[1] - 0.21586050011389926), <, 1e-7);
+    g_assert_cmpfloat(c[2], ==, 0.0f);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/paint/capsule", test_capsule);
+    g_test_add_func("/paint/strokes", test_strokes);
+    g_test_add_func("/paint/coverage/samples", test_coverage);
+    g_test_add_func("/paint/coverage/capsule", test_capsule_area);
+    g_test_add_func("/paint/coverage/thin", test_thin_vein);
+    g_test_add_func("/paint/coverage/sizes", test_area_over_sizes);
+    g_test_add_func("/paint/opacity", test_opacity);
+    g_test_add_func("/paint/padding", test_padding);
+    g_test_add_func("/paint/distance", test_distance);
+    g_test_add_func("/paint/labels/thin", test_thin_labels);
+    g_test_add_func("/paint/labels/priority", test_label_priority);
+    g_test_add_func("/paint/normals", test_normals);
+    g_test_add_func("/paint/threads", test_threads);
+    g_test_add_func("/paint/degenerate", test_degenerate);
+    g_test_add_func("/paint/frame", test_frame);
+    g_test_add_func("/paint/infos", test_infos);
+    return g_test_run();
+}
