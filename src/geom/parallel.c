@@ -24,7 +24,8 @@ static gpointer loop_run(gpointer data)
     }
 }
 
-void parallel_for(unsigned threads, uint32_t n, uint32_t grain, void (*fn)(uint32_t first, uint32_t last, void *user), void *user)
+void parallel_for(unsigned threads, uint32_t n, uint32_t grain, void (*fn)(uint32_t first, uint32_t last, void *user),
+                  void *user)
 {
     if (n == 0)
         return;

@@ -2,7 +2,10 @@
 
 #include <glib.h>
 
-static uint32_t clamp_pixel(double v, uint32_t lo, uint32_t hi) { return !(v > lo) ? lo : v >= hi ? hi : (uint32_t)v; }
+static uint32_t clamp_pixel(double v, uint32_t lo, uint32_t hi)
+{
+    return !(v > lo) ? lo : v >= hi ? hi : (uint32_t)v;
+}
 
 static void between(double a, double b, uint32_t lo, uint32_t hi, uint32_t *first, uint32_t *last)
 {
@@ -78,7 +81,8 @@ static void enter(Bins *b, const Capsule *k, uint32_t i)
     }
 }
 
-void bins_init(Bins *b, uint32_t width, uint32_t height, uint32_t n, Capsule (*shape)(uint32_t i, const void *user), const void *user)
+void bins_init(Bins *b, uint32_t width, uint32_t height, uint32_t n, Capsule (*shape)(uint32_t i, const void *user),
+               const void *user)
 {
     *b = (Bins){.width = width, .height = height, .nx = (width + TILE - 1) / TILE, .ny = (height + TILE - 1) / TILE};
     uint32_t tiles = b->nx * b->ny;

@@ -14,7 +14,8 @@ typedef struct {
 } Bins;
 
 /* shape(i, user) for i < n gives the area in which stroke i matters. */
-void bins_init(Bins *b, uint32_t width, uint32_t height, uint32_t n, Capsule (*shape)(uint32_t i, const void *user), const void *user);
+void bins_init(Bins *b, uint32_t width, uint32_t height, uint32_t n, Capsule (*shape)(uint32_t i, const void *user),
+               const void *user);
 void bins_clear(Bins *b);
 
 /* Pixel bounds of a tile. */
@@ -24,8 +25,8 @@ typedef struct {
 
 TileBox bins_tile(const Bins *b, uint32_t tile);
 
-/* Pixels [*first, *last) of lo … hi (pixel units, the pixel i covers i … i + 1) that lie in [x0, x1): those touched, wholly inside, and
- * those whose centres are inside. */
+/* Pixels [*first, *last) of lo … hi (pixel units, the pixel i covers i … i + 1) that lie in [x0, x1): those touched,
+ * wholly inside, and those whose centres are inside. */
 void pixels_touched(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
 void pixels_inside(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
 void pixels_centred(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);

@@ -5,11 +5,11 @@
 #include "geom/vec.h"
 
 typedef struct {
-    Vec2 a, b;       /* centres of the end discs */
-    double ra, rb;   /* their radii */
-    Vec2 d;          /* unit vector from a to b */
-    double length;   /* |ab|; 0 when one disc holds the other, then a = b */
-    double s, c;     /* sine and cosine of the taper: the sides' outer normals are d s ± (d turned left) c */
+    Vec2 a, b;     /* centres of the end discs */
+    double ra, rb; /* their radii */
+    Vec2 d;        /* unit vector from a to b */
+    double length; /* |ab|; 0 when one disc holds the other, then a = b */
+    double s, c;   /* sine and cosine of the taper: the sides' outer normals are d s ± (d turned left) c */
 } Capsule;
 
 static inline Capsule capsule_new(Vec2 a, double ra, Vec2 b, double rb)
@@ -40,7 +40,8 @@ static inline Vec2 capsule_normal(const Capsule *k, double sign)
     return vec2(k->d.x * k->s - k->d.y * c, k->d.y * k->s + k->d.x * c);
 }
 
-/* Signed distance of p to the surface, negative inside; *t is where along the axis the nearest cross-section lies, 0 … 1. */
+/* Signed distance of p to the surface, negative inside; *t is where along the axis the nearest cross-section lies, 0
+ * … 1. */
 static inline double capsule_distance(const Capsule *k, Vec2 p, double *t)
 {
     Vec2 q = vec_sub(p, k->a);
@@ -59,7 +60,10 @@ static inline double capsule_distance(const Capsule *k, Vec2 p, double *t)
     return x * k->s + y * k->c - k->ra;
 }
 
-static inline double capsule_radius(const Capsule *k, double t) { return k->ra + (k->rb - k->ra) * t; }
+static inline double capsule_radius(const Capsule *k, double t)
+{
+    return k->ra + (k->rb - k->ra) * t;
+}
 
 static inline Box2 capsule_box(const Capsule *k)
 {

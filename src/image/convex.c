@@ -4,7 +4,7 @@
 #include <string.h>
 
 enum {
-    CROWD = 12,   /* polygons in a square from which it is quartered */
+    CROWD = 12, /* polygons in a square from which it is quartered */
     MAX_DEPTH = 6
 };
 
@@ -30,9 +30,15 @@ Circle *circle_new(void)
 
 /* ---- lists of polygons ---- */
 
-static bool same(Vec2 a, Vec2 b) { return fabs(a.x - b.x) < nearby && fabs(a.y - b.y) < nearby; }
+static bool same(Vec2 a, Vec2 b)
+{
+    return fabs(a.x - b.x) < nearby && fabs(a.y - b.y) < nearby;
+}
 
-static uint32_t ring_start(const Rings *r, uint32_t i) { return i > 0 ? r->end[i - 1] : 0; }
+static uint32_t ring_start(const Rings *r, uint32_t i)
+{
+    return i > 0 ? r->end[i - 1] : 0;
+}
 
 static void rings_room(Rings *r, uint32_t points)
 {
@@ -66,7 +72,10 @@ static void rings_close(Rings *r)
     r->end[r->n++] = r->n_v;
 }
 
-static void rings_reset(Rings *r) { r->n = r->n_v = 0; }
+static void rings_reset(Rings *r)
+{
+    r->n = r->n_v = 0;
+}
 
 static void rings_clear(Rings *r)
 {
@@ -112,7 +121,10 @@ static void clip(const Vec2 *v, uint32_t n, Vec2 normal, double bound, Rings *ou
 
 /* ---- a stroke within a pixel ---- */
 
-void union_init(Union *u, const Circle *circle) { *u = (Union){.circle = circle}; }
+void union_init(Union *u, const Circle *circle)
+{
+    *u = (Union){.circle = circle};
+}
 
 void union_clear(Union *u)
 {
@@ -125,7 +137,10 @@ void union_clear(Union *u)
     g_free(u->size);
 }
 
-void union_reset(Union *u) { rings_reset(&u->part); }
+void union_reset(Union *u)
+{
+    rings_reset(&u->part);
+}
 
 /* Cuts the polygon in `ping` if the half-plane cuts it at all. FALSE when nothing is left. */
 static bool cut(Union *u, Vec2 normal, double bound)
@@ -163,13 +178,13 @@ static uint32_t nearest_direction(const Circle *c, Vec2 d)
     return lo;
 }
 
-/* Cuts with the sides, of a polygon around the stroke, that may reach the pixel and bound the stroke's disc at `own`. The
- * polygon has the disc's area: its sides lie a little inside the disc, its corners a little outside. */
+/* Cuts with the sides, of a polygon around the stroke, that may reach the pixel and bound the stroke's disc at `own`.
+ * The polygon has the disc's area: its sides lie a little inside the disc, its corners a little outside. */
 static bool cut_disc(Union *u, const Capsule *k, Vec2 own, double r, Vec2 other, double other_r)
 {
     uint32_t n = disc_sides(r), step = CIRCLE / n;
     const Vec2 *dir = u->circle->dir;
-    Vec2 half = dir[step / 2]; /* cosine and sine of half a side */
+    Vec2 half = dir[step / 2];                                       /* cosine and sine of half a side */
     double dent = 1.0 - (half.y * half.y / (half.x * half.x)) / 6.0; /* sqrt(x / tan x) for small x = pi/n */
     Vec2 left = capsule_normal(k, 1.0), right = capsule_normal(k, -1.0);
     Vec2 to = vec_sub(vec2(0.5, 0.5), own);
@@ -233,7 +248,8 @@ void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec
     Vec2 c = vec_sub(centre, corner);
     rings_reset(&u->ping);
     rings_copy(&u->ping, pixel, 4);
-    if (cut(u, d1, vec_dot(c, d1)) && cut(u, vec2(-d0.x, -d0.y), -vec_dot(c, d0)) && cut_stroke(u, &disc, CUT_NONE, corner))
+    if (cut(u, d1, vec_dot(c, d1)) && cut(u, vec2(-d0.x, -d0.y), -vec_dot(c, d0)) &&
+        cut_stroke(u, &disc, CUT_NONE, corner))
         rings_copy(&u->part, u->ping.v, u->ping.n_v);
 }
 
@@ -366,4 +382,7 @@ static double square_area(Union *u, uint32_t first, uint32_t last, Vec2 corner, 
     return sum;
 }
 
-double union_area(Union *u) { return square_area(u, 0, u->part.n, vec2(0.0, 0.0), 1.0, 0); }
+double union_area(Union *u)
+{
+    return square_area(u, 0, u->part.n, vec2(0.0, 0.0), 1.0, 0);
+}

@@ -1,6 +1,6 @@
-/* Exact area of the union of strokes within one pixel. The parts of strokes in the pixel are convex polygons; a stroke's
- * area is what is left of it after cutting away the strokes before it. Only half-plane cuts are made, so touching
- * and coincident edges need no special cases. */
+/* Exact area of the union of strokes within one pixel. The parts of strokes in the pixel are convex polygons; a
+ * stroke's area is what is left of it after cutting away the strokes before it. Only half-plane cuts are made, so
+ * touching and coincident edges need no special cases. */
 #ifndef IMAGE_CONVEX_H
 #define IMAGE_CONVEX_H
 
@@ -44,8 +44,8 @@ typedef enum { CUT_NONE = 0, CUT_A = 1, CUT_B = 2 } StrokeCut;
 /* Adds the part of a stroke in the pixel whose top left corner is `corner`. */
 void union_add(Union *u, const Capsule *k, StrokeCut cut, Vec2 corner);
 
-/* Adds the wedge between two strokes that are both cut at their joint: the part of the disc that lies beyond the first, which runs along
- * d0, and before the second, which runs along d1. */
+/* Adds the wedge between two strokes that are both cut at their joint: the part of the disc that lies beyond the first,
+ * which runs along d0, and before the second, which runs along d1. */
 void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec2 corner);
 
 /* Area covered, 0 … 1. About 1e-5 exact. */

@@ -59,7 +59,8 @@ static void add_wedge(Union *u, const Stroke *s, Vec2 corner)
 {
     const Capsule *k = &s->shape;
     double reach = k->ra + 0.7072, turn = fabs(vec_cross(s->before, k->d)), wedge_area = 0.5 * k->ra * k->ra * turn;
-    if ((wedge_area > 1e-6 || vec_dot(s->before, k->d) < 0.0) && vec_dist2(k->a, vec2(corner.x + 0.5, corner.y + 0.5)) < reach * reach)
+    if ((wedge_area > 1e-6 || vec_dot(s->before, k->d) < 0.0) &&
+        vec_dist2(k->a, vec2(corner.x + 0.5, corner.y + 0.5)) < reach * reach)
         union_add_wedge(u, k->a, k->ra, s->before, k->d, corner);
 }
 
@@ -118,8 +119,8 @@ const float *painter_cover(Painter *p)
 
 enum { BAND = 64 }; /* rows per part */
 
-/* Adds the signed area to the right of the part of a segment within row y (0 <= its y <= 1) to the sums of its pixels. sum[x]
- * gathers what pixel x gets beyond what all pixels right of an edge get, so that prefix sums give areas. */
+/* Adds the signed area to the right of the part of a segment within row y (0 <= its y <= 1) to the sums of its pixels.
+ * sum[x] gathers what pixel x gets beyond what all pixels right of an edge get, so that prefix sums give areas. */
 static void add_segment(double *sum, uint32_t width, Vec2 a, Vec2 b)
 {
     double dy = b.y - a.y;
@@ -180,7 +181,7 @@ static void blade_band(uint32_t first, uint32_t last, void *user)
     const Painter *p = user;
     const Polygon *m = p->net->margin;
     gsize stride = (gsize)p->width + 2;
-    double *sum = g_new0(double, stride * (last - first));
+    double *sum = g_new0(double, stride *(last - first));
     for (uint32_t i = 0; i < m->n; i++) {
         Vec2 a = m->v[i], b = m->v[i + 1 < m->n ? i + 1 : 0];
         Vec2 pa = {(a.x - p->frame.corner.x) * p->frame.scale, (p->frame.corner.y - a.y) * p->frame.scale};

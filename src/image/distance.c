@@ -1,5 +1,6 @@
-/* Exact distance fields. A square of pixels keeps the strokes that may be nearest to one of its pixels: those whose distance to its
- * centre exceeds the least one by no more than the square's diameter. Its quarters choose among these. */
+/* Exact distance fields. A square of pixels keeps the strokes that may be nearest to one of its pixels: those whose
+ * distance to its centre exceeds the least one by no more than the square's diameter. Its quarters choose among these.
+ */
 #include <glib.h>
 
 #include "geom/parallel.h"
@@ -65,7 +66,7 @@ static void fill_pixels(const Field *f, const Square *q)
         }
 }
 
-/* `room` and `distance` take the lists of all smaller squares on the way down: never longer than the list of q. */
+/* `distance` has room for as many numbers as the list of q: the lists of smaller squares are no longer. */
 static void fill_square(const Field *f, const Square *q, double *distance)
 {
     if (q->side <= LEAF || q->n <= 2) {
@@ -145,8 +146,8 @@ static void descend(Field *f)
     g_array_set_size(f->squares, kept);
 }
 
-float *distance_field(const Painter *p, const Capsule *(*shape)(uint32_t i, const void *user), const void *user, uint32_t n,
-                      const float *where, double limit)
+float *distance_field(const Painter *p, const Capsule *(*shape)(uint32_t i, const void *user), const void *user,
+                      uint32_t n, const float *where, double limit)
 {
     Field f = {p->width, p->rows, p->style.threads, shape, user, where, limit, NULL, NULL, NULL};
     f.out = g_new0(float, (gsize)p->width * p->rows);
@@ -166,7 +167,10 @@ float *distance_field(const Painter *p, const Capsule *(*shape)(uint32_t i, cons
 
 /* ---- the two fields in use ---- */
 
-static const Capsule *stroke_shape(uint32_t i, const void *user) { return &((const Strokes *)user)->v[i].shape; }
+static const Capsule *stroke_shape(uint32_t i, const void *user)
+{
+    return &((const Strokes *)user)->v[i].shape;
+}
 
 const float *painter_away(Painter *p)
 {
@@ -177,7 +181,10 @@ const float *painter_away(Painter *p)
     return p->away;
 }
 
-static const Capsule *margin_shape(uint32_t i, const void *user) { return &((const Capsule *)user)[i]; }
+static const Capsule *margin_shape(uint32_t i, const void *user)
+{
+    return &((const Capsule *)user)[i];
+}
 
 const float *painter_inset(Painter *p)
 {

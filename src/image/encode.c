@@ -7,7 +7,10 @@
 /* The sRGB curve (IEC 61966-2-1) at CURVE + 1 even steps; straight lines between them err by less than 2e-6. */
 enum { CURVE = 16384 };
 
-static double srgb_encode(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * dmath_pow(x, 1.0 / 2.4) - 0.055; }
+static double srgb_encode(double x)
+{
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * dmath_pow(x, 1.0 / 2.4) - 0.055;
+}
 
 static double srgb_at(const double *curve, double x)
 {

@@ -17,7 +17,6 @@ typedef struct {
     gboolean half;
     Staged file;
     int code; /* errno of a failed write */
-    char *message;
     /* the batch being compressed */
     uint32_t first; /* chunk */
     exr_encode_pipeline_t pipe[BATCH];
@@ -25,21 +24,20 @@ typedef struct {
     exr_result_t result[BATCH];
 } Writer;
 
+/* Says nothing: the result code tells the caller. The library may hold its lock here, so nothing of it can be asked. */
 static void on_error(exr_const_context_t exr, exr_result_t code, const char *message)
 {
-    void *user = NULL;
+    (void)exr;
     (void)code;
-    if (exr == NULL || exr_get_user_data(exr, &user) != EXR_ERR_SUCCESS || user == NULL)
-        return;
-    Writer *w = user;
-    if (w->message == NULL)
-        w->message = g_strdup(message);
+    (void)message;
 }
 
 static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size, uint64_t offset,
                         exr_stream_error_func_ptr_t fail)
 {
     Writer *w = user;
+    (void)exr;
+    (void)fail; /* would take the lock that the library holds while it writes */
     const char *at = buffer;
     uint64_t left = size;
     while (left > 0) {
@@ -48,7 +46,6 @@ static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer,
             continue;
         if (n <= 0) {
             w->code = n < 0 ? errno : ENOSPC;
-            fail(exr, EXR_ERR_WRITE_IO, "write failed");
             return -1;
         }
         at += n;
@@ -57,15 +54,48 @@ static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer,
     return (int64_t)size;
 }
 
-/* Attribute names keep letters, digits, '_', '.' and '-'; the names OpenEXR gives a meaning of its own get a '_' behind. */
+/* Attribute names keep letters, digits, '_', '.' and '-'; the names OpenEXR gives a meaning of its own get a '_'
+ * behind. */
 static char *attribute_name(const char *key)
 {
-    static const char *const taken[] = {"channels", "compression", "dataWindow", "displayWindow", "lineOrder",
-        "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "name", "type", "version", "chunkCount", "tiles",
-        "view", "preview", "envmap", "timeCode", "keyCode", "chromaticities", "whiteLuminance", "adoptedNeutral", "xDensity",
-        "longitude", "latitude", "altitude", "utcOffset", "focus", "expTime", "aperture", "isoSpeed", "framesPerSecond",
-        "multiView", "worldToCamera", "worldToNDC", "deepImageState", "originalDataWindow", "dwaCompressionLevel",
-        "maxSamplesPerPixel"};
+    static const char *const taken[] = {"channels",
+                                        "compression",
+                                        "dataWindow",
+                                        "displayWindow",
+                                        "lineOrder",
+                                        "pixelAspectRatio",
+                                        "screenWindowCenter",
+                                        "screenWindowWidth",
+                                        "name",
+                                        "type",
+                                        "version",
+                                        "chunkCount",
+                                        "tiles",
+                                        "view",
+                                        "preview",
+                                        "envmap",
+                                        "timeCode",
+                                        "keyCode",
+                                        "chromaticities",
+                                        "whiteLuminance",
+                                        "adoptedNeutral",
+                                        "xDensity",
+                                        "longitude",
+                                        "latitude",
+                                        "altitude",
+                                        "utcOffset",
+                                        "focus",
+                                        "expTime",
+                                        "aperture",
+                                        "isoSpeed",
+                                        "framesPerSecond",
+                                        "multiView",
+                                        "worldToCamera",
+                                        "worldToNDC",
+                                        "deepImageState",
+                                        "originalDataWindow",
+                                        "dwaCompressionLevel",
+                                        "maxSamplesPerPixel"};
     GString *s = g_string_new(NULL);
     for (const char *c = key; *c != '\0' && s->len < 250; c++)
         g_string_append_c(s, g_ascii_isalnum(*c) || strchr("_.-", *c) != NULL ? *c : '_');
@@ -75,6 +105,15 @@ static char *attribute_name(const char *key)
     if (reserved)
         g_string_append_c(s, '_');
     return g_string_free(s, FALSE);
+}
+
+/* Names above 31 bytes need a flag that some readers refuse. */
+static int has_long_keys(const Metadata *meta)
+{
+    for (uint32_t i = 0; meta != NULL && i < meta->n; i++)
+        if (strlen(meta->key[i]) >= 31)
+            return 1;
+    return 0;
 }
 
 static exr_result_t put_text(Writer *w, const char *key, const char *value)
@@ -118,11 +157,12 @@ static exr_result_t put_header(Writer *w, const Metadata *meta)
 {
     exr_pixel_type_t type = w->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
     const Plane *p = w->plane;
-    exr_result_t r = exr_set_longname_support(w->exr, 1);
+    exr_result_t r = exr_set_longname_support(w->exr, has_long_keys(meta));
     if (r == EXR_ERR_SUCCESS)
         r = exr_add_part(w->exr, NULL, EXR_STORAGE_SCANLINE, &w->part);
     if (r == EXR_ERR_SUCCESS)
-        r = exr_initialize_required_attr_simple(w->exr, w->part, (int32_t)p->width, (int32_t)p->height, EXR_COMPRESSION_ZIP);
+        r = exr_initialize_required_attr_simple(w->exr, w->part, (int32_t)p->width, (int32_t)p->height,
+                                                EXR_COMPRESSION_ZIP);
     for (uint32_t c = 0; r == EXR_ERR_SUCCESS && c < p->channels; c++)
         r = exr_add_channel(w->exr, w->part, channel_name(p->channels, c), type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (r == EXR_ERR_SUCCESS)
@@ -200,8 +240,8 @@ static exr_result_t put_batch(Writer *w, uint32_t n)
         if (r == EXR_ERR_SUCCESS)
             r = w->result[i];
         if (r == EXR_ERR_SUCCESS)
-            r = exr_write_scanline_chunk(w->exr, w->part, (int)((w->first + i) * CHUNK_ROWS), w->pipe[i].compressed_buffer,
-                                         w->pipe[i].compressed_bytes);
+            r = exr_write_scanline_chunk(w->exr, w->part, (int)((w->first + i) * CHUNK_ROWS),
+                                         w->pipe[i].compressed_buffer, w->pipe[i].compressed_bytes);
         exr_encoding_destroy(w->exr, &w->pipe[i]);
     }
     return r;
@@ -252,10 +292,9 @@ gboolean image_write_exr(const Plane *p, const char *path, gboolean half, const 
             staged_error(path, w->code, error);
         else
             g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_FAILED, "can't write %s: %s", path,
-                        w->message != NULL ? w->message : exr_get_error_code_as_string(r));
+                        exr_get_error_code_as_string(r));
         staged_abort(&w->file);
     }
-    g_free(w->message);
     g_free(w);
     return ok;
 }

@@ -25,6 +25,7 @@ Frame frame_fit(Box2 box, uint32_t size, bool square, double border)
         if (f.height > size)
             f.height = size;
     }
-    f.corner = vec2(0.5 * (box.x0 + box.x1) - 0.5 * f.width / f.scale, 0.5 * (box.y0 + box.y1) + 0.5 * f.height / f.scale);
+    f.corner =
+        vec2(0.5 * (box.x0 + box.x1) - 0.5 * f.width / f.scale, 0.5 * (box.y0 + box.y1) + 0.5 * f.height / f.scale);
     return f;
 }

@@ -24,9 +24,15 @@ void noise_init(Noise *n, uint64_t seed, uint32_t field, double wavelength, Box2
         }
 }
 
-void noise_clear(Noise *n) { g_free(n->gradient); }
+void noise_clear(Noise *n)
+{
+    g_free(n->gradient);
+}
 
-static double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
+static double fade(double t)
+{
+    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
 
 double noise_at(const Noise *n, Vec2 p)
 {

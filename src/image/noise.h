@@ -1,5 +1,5 @@
-/* Smooth noise over the plane (gradient noise; Perlin 1985, 2002). A value depends on seed, field and place alone, so pictures of any
- * size and frame show the same pattern. */
+/* Smooth noise over the plane (gradient noise; Perlin 1985, 2002). A value depends on seed, field and place alone, so
+ * pictures of any size and frame show the same pattern. */
 #ifndef IMAGE_NOISE_H
 #define IMAGE_NOISE_H
 

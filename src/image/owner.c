@@ -4,8 +4,9 @@
 #include "geom/parallel.h"
 #include "image/painter.h"
 
-/* A pixel belongs to a vein when its centre lies in the vein drawn at least one pixel wide: so a thin vein gives an unbroken line of
- * pixels, and a wide one no more than its own. Just outside it lies beside the vein; such pixels take its colour in part. */
+/* A pixel belongs to a vein when its centre lies in the vein drawn at least one pixel wide: so a thin vein gives an
+ * unbroken line of pixels, and a wide one no more than its own. Just outside it lies beside the vein; such pixels take
+ * its colour in part. */
 static const double least_radius = 0.5, beside = 0.75; /* pixels */
 
 typedef struct {
@@ -16,8 +17,8 @@ typedef struct {
     double radius, distance; /* of the cross-section here; to the surface */
 } Claim;
 
-/* Within a vein beats beside one. Of several veins the lowest order wins, then the widest, then the lower number; of the pieces of
- * one vein the one whose axis is nearest for its radius. Beside veins the nearest wins. */
+/* Within a vein beats beside one. Of several veins the lowest order wins, then the widest, then the lower number; of
+ * the pieces of one vein the one whose axis is nearest for its radius. Beside veins the nearest wins. */
 static bool stronger(const Claim *a, const Claim *b)
 {
     if (b->stroke == OWNER_NONE || a->within != b->within)

@@ -1,5 +1,5 @@
-/* Padding: each pixel beyond the margin takes its colour from the nearest pixel of the blade, exactly (the lower envelope of parabolas
- * of Felzenszwalb and Huttenlocher 2012: along rows first, then along columns). */
+/* Padding: each pixel beyond the margin takes its colour from the nearest pixel of the blade, exactly (the lower
+ * envelope of parabolas of Felzenszwalb and Huttenlocher 2012: along rows first, then along columns). */
 #include <glib.h>
 #include <string.h>
 
@@ -36,7 +36,7 @@ static void nearest_in_row(uint32_t y, void *user)
 
 /* One parabola of the lower envelope: rows below `from` belong to those before it. */
 typedef struct {
-    uint32_t y, x; /* the blade's pixel */
+    uint32_t y, x;  /* the blade's pixel */
     int64_t height; /* its squared distance within its row */
     double from;
 } Arch;

@@ -11,23 +11,31 @@ static const MapInfo infos[MAP_COUNT] = {
     [MAP_BASE_COLOR] = {"base_color", PLANE_COLOUR, 3, "", "Colour of the sunny (adaxial) side"},
     [MAP_ABAXIAL_BASE_COLOR] = {"abaxial_base_color", PLANE_COLOUR, 3, "", "Colour of the shadow (abaxial) side"},
     [MAP_OPACITY] = {"opacity", PLANE_DATA, 1, "", "Exact part of the pixel that the blade covers"},
-    [MAP_HEIGHT] = {"height", PLANE_DATA, 1, "segments", "Surface of the abaxial side: veins raised, blade sunk between them"},
-    [MAP_NORMAL_GL] = {"normal_gl", PLANE_DATA, 3, "", "Normals of the abaxial side from the height map, x right, y up, z to the viewer"},
+    [MAP_HEIGHT] = {"height", PLANE_DATA, 1, "segments",
+                    "Surface of the abaxial side: veins raised, blade sunk between them"},
+    [MAP_NORMAL_GL] = {"normal_gl", PLANE_DATA, 3, "",
+                       "Normals of the abaxial side from the height map, x right, y up, z to the viewer"},
     [MAP_ADAXIAL_NORMAL_GL] = {"adaxial_normal_gl", PLANE_DATA, 3, "",
                                "Normals of the adaxial side: larger veins slightly sunk, blade arched between them"},
     [MAP_ROUGHNESS] = {"roughness", PLANE_DATA, 1, "", "Roughness of the surface, 0 mirror to 1 dull"},
     [MAP_AO] = {"ao", PLANE_DATA, 1, "", "Ambient occlusion of the abaxial side: dark in the creases beside veins"},
-    [MAP_TRANSLUCENCY] = {"translucency", PLANE_DATA, 1, "", "Part of the light that passes through: much in the blade, little in thick veins"},
-    [MAP_THICKNESS] = {"thickness", PLANE_DATA, 1, "segments", "Thickness of blade and vein, thinning out at the margin"},
+    [MAP_TRANSLUCENCY] = {"translucency", PLANE_DATA, 1, "",
+                          "Part of the light that passes through: much in the blade, little in thick veins"},
+    [MAP_THICKNESS] = {"thickness", PLANE_DATA, 1, "segments",
+                       "Thickness of blade and vein, thinning out at the margin"},
     [MAP_VEIN_MASK] = {"vein_mask", PLANE_DATA, 1, "", "Exact part of the pixel that veins cover"},
     [MAP_VEIN_ORDER] = {"vein_order", PLANE_LABEL, 1, "", "Order of the vein at the pixel, 1 primary; 0 none"},
     [MAP_VEIN_ID] = {"vein_id", PLANE_LABEL, 1, "", "Number of the vein at the pixel, from 1; 0 none"},
     [MAP_VEIN_WIDTH] = {"vein_width", PLANE_DATA, 1, "segments", "Width of the vein at the pixel; 0 none"},
-    [MAP_DISTANCE] = {"distance", PLANE_DATA, 1, "segments", "Distance to the nearest vein inside the blade; 0 in veins"},
+    [MAP_DISTANCE] = {"distance", PLANE_DATA, 1, "segments",
+                      "Distance to the nearest vein inside the blade; 0 in veins"},
     [MAP_AGE] = {"age", PLANE_DATA, 1, "steps", "Step at which the vein at the pixel was born; 0 none"},
 };
 
-const MapInfo *paint_map_info(MapId id) { return &infos[id]; }
+const MapInfo *paint_map_info(MapId id)
+{
+    return &infos[id];
+}
 
 int paint_map_find(const char *name)
 {

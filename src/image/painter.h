@@ -15,22 +15,22 @@ struct Painter {
     Frame frame;
     PaintStyle style;
     uint32_t width, rows; /* of the image, pixels */
-    double widest;  /* largest vein width, segments */
-    double spacing; /* blade area over vein length, segments: distance of neighbouring veins in a net */
+    double widest;        /* largest vein width, segments */
+    double spacing;       /* blade area over vein length, segments: distance of neighbouring veins in a net */
     Circle *circle;
 
     Strokes *strokes; /* as exact as the image can show */
     Bins bins;
-    float *cover;     /* part of the pixel covered by veins */
-    float *blade;     /* part of the pixel covered by the blade */
-    uint32_t *owner;  /* stroke at the pixel, see above */
-    float *away;      /* distance from the pixel's centre to the nearest vein, pixels; negative inside a vein */
-    float *inset;     /* distance to the margin, pixels, no larger than inset_limit */
+    float *cover;       /* part of the pixel covered by veins */
+    float *blade;       /* part of the pixel covered by the blade */
+    uint32_t *owner;    /* stroke at the pixel, see above */
+    float *away;        /* distance from the pixel's centre to the nearest vein, pixels; negative inside a vein */
+    float *inset;       /* distance to the margin, pixels, no larger than inset_limit */
     float *vein_height; /* relief of the veins alone, segments */
-    float *halo;      /* nearness of large veins, 0 … 1 */
-    float *arch;      /* arch of the blade between veins, 0 at a vein, 1 in the middle of a mesh */
-    float *height;    /* abaxial surface, segments; carried beyond the margin */
-    uint32_t *source; /* pixel whose colour a pixel takes: itself in the blade, OWNER_NONE beyond the padding */
+    float *halo;        /* nearness of large veins, 0 … 1 */
+    float *arch;        /* arch of the blade between veins, 0 at a vein, 1 in the middle of a mesh */
+    float *height;      /* abaxial surface, segments; carried beyond the margin */
+    uint32_t *source;   /* pixel whose colour a pixel takes: itself in the blade, OWNER_NONE beyond the padding */
 };
 
 /* Each makes what its name says and keeps it in the painter. */
@@ -49,10 +49,10 @@ const uint32_t *painter_source(Painter *p);
 double painter_inset_limit(const Painter *p); /* pixels */
 double painter_round_up(double value);        /* to two significant digits */
 
-/* Distance of each pixel's centre to the nearest of n strokes, exact up to `limit`, beyond which it is `limit`; 0 where `where` is 0
- * (strokes may then be farther or nearer). Signed: negative inside a stroke. */
-float *distance_field(const Painter *p, const Capsule *(*shape)(uint32_t i, const void *user), const void *user, uint32_t n,
-                      const float *where, double limit);
+/* Distance of each pixel's centre to the nearest of n strokes, exact up to `limit`, beyond which it is `limit`; 0 where
+ * `where` is 0 (strokes may then be farther or nearer). Signed: negative inside a stroke. */
+float *distance_field(const Painter *p, const Capsule *(*shape)(uint32_t i, const void *user), const void *user,
+                      uint32_t n, const float *where, double limit);
 
 /* Maps of data and labels (attribute.c), of the surface (surface.c) and of what it looks like (shade.c). */
 Plane *paint_attribute(Painter *p, MapId id);

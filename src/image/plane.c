@@ -9,7 +9,7 @@ Plane *plane_new(uint32_t width, uint32_t height, uint32_t channels, PlaneKind k
     p->kind = kind;
     p->high = 1.0;
     p->unit = "";
-    p->px = g_new0(float, (gsize)width * height * channels);
+    p->px = g_new0(float, (gsize)width *height *channels);
     return p;
 }
 

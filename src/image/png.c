@@ -19,8 +19,8 @@ typedef struct {
     GPtrArray *strings; /* keys and values of the text chunks */
     GArray *texts;      /* png_text */
     uint8_t *row;
-    int code;           /* errno of a failed write */
-    char *message;      /* libpng's, of any other failure */
+    int code;      /* errno of a failed write */
+    char *message; /* libpng's, of any other failure */
 } Writer;
 
 static void on_error(png_structp png, png_const_charp message)
@@ -46,7 +46,10 @@ static void on_write(png_structp png, png_bytep data, png_size_t n)
     }
 }
 
-static void on_flush(png_structp png) { (void)png; }
+static void on_flush(png_structp png)
+{
+    (void)png;
+}
 
 /* A keyword is 1 … 79 printable Latin-1 characters without outer or double spaces; ours are plain ASCII. */
 static char *keyword(const char *key)
@@ -105,7 +108,8 @@ static void collect_texts(Writer *w, const Plane *p, const Metadata *meta)
 
 static int colour_type(uint32_t channels)
 {
-    static const int type[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+    static const int type[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
+                               PNG_COLOR_TYPE_RGB_ALPHA};
     return type[channels - 1];
 }
 
@@ -126,8 +130,8 @@ static gboolean emit(Writer *w, const Plane *p)
     png_set_write_fn(w->png, w, on_write, on_flush);
     png_set_user_limits(w->png, 0x7FFFFFFF, 0x7FFFFFFF);
     set_compression(w, p);
-    png_set_IHDR(w->png, w->info, p->width, p->height, w->encoder.depth, colour_type(w->encoder.channels), PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(w->png, w->info, p->width, p->height, w->encoder.depth, colour_type(w->encoder.channels),
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (p->kind == PLANE_COLOUR)
         png_set_sRGB_gAMA_and_cHRM(w->png, w->info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (w->texts->len > 0)

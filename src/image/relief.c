@@ -4,8 +4,8 @@
 #include "geom/parallel.h"
 #include "image/painter.h"
 
-/* The profile over u, distance from the axis in radii: an arch over the vein and a fillet that runs out to the blade FILLET radii
- * beyond its edge, joined smoothly at a height of `foot`. */
+/* The profile over u, distance from the axis in radii: an arch over the vein and a fillet that runs out to the blade
+ * FILLET radii beyond its edge, joined smoothly at a height of `foot`. */
 static const double fillet = 0.6, foot = 0.375; /* foot = fillet / (1 + fillet) makes the slopes agree */
 static const double halo_reach = 2.2;           /* radii from the axis */
 static const double halo_from = 0.08;           /* of the widest vein: where a vein begins to have a halo */
@@ -46,7 +46,8 @@ static void lift(const Relief *r, const Capsule *k, uint32_t x, uint32_t y)
         p->vein_height[at] = (float)height;
     double share = 2.0 * radius / p->frame.scale / p->widest;
     if (share > halo_from && u < halo_reach) {
-        double fall = 1.0 - u / halo_reach, halo = sqrt((share - halo_from) / (1.0 - halo_from)) * fall * fall * (3.0 - 2.0 * fall);
+        double fall = 1.0 - u / halo_reach,
+               halo = sqrt((share - halo_from) / (1.0 - halo_from)) * fall * fall * (3.0 - 2.0 * fall);
         if (halo > (double)p->halo[at])
             p->halo[at] = (float)halo;
     }

@@ -34,7 +34,10 @@ static double smoothstep(double t)
     return t * t * (3.0 - 2.0 * t);
 }
 
-static double mix(double a, double b, double t) { return a + (b - a) * t; }
+static double mix(double a, double b, double t)
+{
+    return a + (b - a) * t;
+}
 
 static void spot_vein(const Painter *p, Spot *s, uint32_t x, uint32_t y)
 {
@@ -81,7 +84,8 @@ static void lamina_colour(const Look *l, const Spot *s, double out[3])
     double yellow = 0.8 * s->noise[TINT] + 0.3 * s->noise[PATCH] + 0.5 * (0.5 - along);
     double fill = l->abaxial ? 0.10 : -0.16; /* mesophyll is thickest in the middle of a mesh */
     double halo = (double)l->p->halo[s->at];
-    bright = 1.0 + strength * (bright + 0.12 * (0.5 - along)) + fill * (s->middle - 0.4) + (l->abaxial ? 0.10 : 0.22) * halo;
+    bright =
+        1.0 + strength * (bright + 0.12 * (0.5 - along)) + fill * (s->middle - 0.4) + (l->abaxial ? 0.10 : 0.22) * halo;
     yellow = strength * yellow * 0.55 + 0.12 * halo;
     double shift[3] = {1.0 + 0.8 * yellow, 1.0 + 0.15 * yellow, 1.0 - 0.6 * yellow};
     for (int i = 0; i < 3; i++)
@@ -90,7 +94,8 @@ static void lamina_colour(const Look *l, const Spot *s, double out[3])
     double limit = painter_inset_limit(l->p) * (0.75 + 0.4 * s->noise[PATCH]);
     double edge = l->p->net->margin != NULL ? 1.0 - smoothstep((double)l->p->inset[s->at] / limit) : 0.0;
     for (int i = 0; i < 3; i++) {
-        double band = l->abaxial ? 0.5 * (double)(style->margin[i] + style->abaxial_lamina[i]) : (double)style->margin[i];
+        double band =
+            l->abaxial ? 0.5 * (double)(style->margin[i] + style->abaxial_lamina[i]) : (double)style->margin[i];
         out[i] = mix(out[i], band * MAX(bright, 0.2), (l->abaxial ? 0.5 : 0.7) * edge);
     }
 }
@@ -103,7 +108,8 @@ static void look_colour(const Look *l, const Spot *s, float *out)
     lamina_colour(l, s, lamina);
     double strength = vein_strength(l, s);
     /* rounded: lighter along the axis, deeper at the edges, which melt into the blade */
-    double shade = (l->abaxial ? 1.05 : 1.03) - 0.16 * s->across * s->across + 0.10 * style->variation * s->noise[MOTTLE];
+    double shade =
+        (l->abaxial ? 1.05 : 1.03) - 0.16 * s->across * s->across + 0.10 * style->variation * s->noise[MOTTLE];
     double melt = s->cover * (1.0 - 0.35 * smoothstep(2.0 * s->across - 1.0));
     for (int i = 0; i < 3; i++) {
         double v = mix(lamina[i], (double)vein[i] * shade, strength);
@@ -149,7 +155,8 @@ static void look_noise(Look *l)
 {
     const Painter *p = l->p;
     double length = MAX(MAX(l->box.x1 - l->box.x0, l->box.y1 - l->box.y0), 1e-6);
-    double wave[N_NOISE] = {0.33 * length, 0.10 * length, MAX(0.022 * length, 2.0 * p->spacing), 0.45 * p->spacing, 0.26 * length};
+    double wave[N_NOISE] = {0.33 * length, 0.10 * length, MAX(0.022 * length, 2.0 * p->spacing), 0.45 * p->spacing,
+                            0.26 * length};
     for (uint32_t i = 0; i < N_NOISE; i++)
         noise_init(&l->noise[i], p->style.seed, i, wave[i], l->box, p->frame.scale);
 }

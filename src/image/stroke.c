@@ -24,7 +24,10 @@ enum { MAX_CUTS = 16 }; /* pieces of the curve between two nodes */
 /* Turning shortens a chord; a vein may lose this part of its length, hence of its area, by simplification. */
 static const double length_loss = 0.0005;
 
-static Knot *knots(GArray *a) { return (Knot *)(void *)a->data; }
+static Knot *knots(GArray *a)
+{
+    return (Knot *)(void *)a->data;
+}
 
 /* Edges by vein, and along each vein from its origin on: tails grow along a vein. */
 static uint32_t *edges_by_vein(const Network *net)
@@ -49,22 +52,28 @@ static uint32_t *edges_by_vein(const Network *net)
     return by_vein;
 }
 
-static Vec2 to_image(const Frame *f, Vec2 p) { return vec2((p.x - f->corner.x) * f->scale, (f->corner.y - p.y) * f->scale); }
+static Vec2 to_image(const Frame *f, Vec2 p)
+{
+    return vec2((p.x - f->corner.x) * f->scale, (f->corner.y - p.y) * f->scale);
+}
 
-/* Nodes of the run edge[0 … n-1]. Widths at inner nodes are the mean of the edges', so that veins taper without steps. */
+/* Nodes of the run edge[0 … n-1]. Widths at inner nodes are the mean of the edges', so that veins taper without steps.
+ */
 static void collect_knots(Builder *b, const Network *net, const Frame *frame, const uint32_t *edge, uint32_t n)
 {
     g_array_set_size(b->knot, 0);
     for (uint32_t i = 0; i <= n; i++) {
         uint32_t in = edge[i > 0 ? i - 1 : 0], out = edge[i < n ? i : n - 1];
         uint32_t node = i < n ? net->tail[out] : net->head[in];
-        Knot k = {to_image(frame, net->node[node]), 0.25 * frame->scale * (net->width[in] + net->width[out]), net->birth[out]};
+        Knot k = {to_image(frame, net->node[node]), 0.25 * frame->scale * (net->width[in] + net->width[out]),
+                  net->birth[out]};
         g_array_append_val(b->knot, k);
     }
 }
 
-/* Murray's law makes a vein narrower at once where a branch leaves; in a leaf it takes about a vein's width. So radii are averaged along
- * the vein over `blend` radii to either side, less near its ends. sum[i] is the integral of the radius up to knot i, at[i] the arc length. */
+/* Murray's law makes a vein narrower at once where a branch leaves; in a leaf it takes about a vein's width. So radii
+ * are averaged along the vein over `blend` radii to either side, less near its ends. sum[i] is the integral of the
+ * radius up to knot i, at[i] the arc length. */
 static double integral(const double *at, const double *sum, const Knot *k, uint32_t n, double s)
 {
     uint32_t lo = 0, hi = n - 1;
@@ -91,7 +100,8 @@ static void blend_radii(Builder *b)
     }
     for (uint32_t i = 0; i < n; i++) {
         double w = MIN(blend * k[i].r, MIN(at[i] - at[0], at[n - 1] - at[i]));
-        mean[i] = w > 0.0 ? (integral(at, sum, k, n, at[i] + w) - integral(at, sum, k, n, at[i] - w)) / (2.0 * w) : k[i].r;
+        mean[i] =
+            w > 0.0 ? (integral(at, sum, k, n, at[i] + w) - integral(at, sum, k, n, at[i] - w)) / (2.0 * w) : k[i].r;
     }
     for (uint32_t i = 0; i < n; i++)
         k[i].r = mean[i];
@@ -119,7 +129,8 @@ static Vec2 hermite(Vec2 p, Vec2 m, Vec2 q, Vec2 n, double t)
     return vec2(h0 * p.x + g0 * m.x + h1 * q.x + g1 * n.x, h0 * p.y + g0 * m.y + h1 * q.y + g1 * n.y);
 }
 
-/* Pieces that keep the polyline within half the tolerance of the curve: its deviation is about |tangent - chord| / 4n². */
+/* Pieces that keep the polyline within half the tolerance of the curve: its deviation is about |tangent - chord| / 4n².
+ */
 static uint32_t cuts(const Builder *b, Vec2 chord, Vec2 m0, Vec2 m1)
 {
     double bend = MAX(vec_dist(m0, chord), vec_dist(m1, chord)), allowed = 2.0 * b->tol.position;
@@ -147,7 +158,8 @@ static void smooth(Builder *b)
     g_array_append_val(b->line, k[last]);
 }
 
-/* The point between i and j that a straight piece would miss worst, when it misses one by more than the tolerance; else i. */
+/* The point between i and j that a straight piece would miss worst, when it misses one by more than the tolerance; else
+ * i. */
 static uint32_t worst(const Builder *b, uint32_t i, uint32_t j)
 {
     const Knot *k = knots(b->line);
@@ -200,16 +212,21 @@ static void simplify(Builder *b)
     qsort(b->kept->data, b->kept->len, sizeof(uint32_t), by_index);
 }
 
-/* Is the part of an end disc of radius r that lies beyond the piece's other end within the disc there? With x >= length,
- * (x - length)² + y² <= x² + y² - length². */
-static bool swallows(const Capsule *k, double r, double other) { return other * other >= r * r - k->length * k->length; }
+/* Is the part of an end disc of radius r that lies beyond the piece's other end within the disc there? With x >=
+ * length, (x - length)² + y² <= x² + y² - length². */
+static bool swallows(const Capsule *k, double r, double other)
+{
+    return other * other >= r * r - k->length * k->length;
+}
 
-/* At the joint of two pieces neither need draw the whole disc. The half beyond the first piece lies beside the second's axis, in the
- * second, or beyond its end, in the disc there, for which the same holds; but for a wedge on the outer side of the bend. */
+/* At the joint of two pieces neither need draw the whole disc. The half beyond the first piece lies beside the second's
+ * axis, in the second, or beyond its end, in the disc there, for which the same holds; but for a wedge on the outer
+ * side of the bend. */
 static void join(Stroke *a, Stroke *b)
 {
     double r = b->shape.ra;
-    if (a->shape.length == 0.0 || b->shape.length == 0.0 || !swallows(&a->shape, r, a->shape.ra) || !swallows(&b->shape, r, b->shape.rb))
+    if (a->shape.length == 0.0 || b->shape.length == 0.0 || !swallows(&a->shape, r, a->shape.ra) ||
+        !swallows(&b->shape, r, b->shape.rb))
         return;
     a->cut |= CUT_B;
     b->cut |= CUT_A;
@@ -227,7 +244,13 @@ static void emit(Builder *b, uint32_t vein, uint8_t order)
             s->cap = s->cap > 0 ? s->cap * 2 : 1024;
             s->v = g_renew(Stroke, s->v, s->cap);
         }
-        s->v[s->n++] = (Stroke){capsule_new(p->p, p->r, q->p, q->r), vein, (float)p->birth, (float)k[at[i + 1] - 1].birth, order, CUT_NONE, {0.0, 0.0}};
+        s->v[s->n++] = (Stroke){capsule_new(p->p, p->r, q->p, q->r),
+                                vein,
+                                (float)p->birth,
+                                (float)k[at[i + 1] - 1].birth,
+                                order,
+                                CUT_NONE,
+                                {0.0, 0.0}};
         if (i > 0)
             join(&s->v[s->n - 2], &s->v[s->n - 1]);
     }

@@ -8,12 +8,12 @@
 
 /* A piece of a vein. */
 typedef struct {
-    Capsule shape;      /* pixels */
+    Capsule shape; /* pixels */
     uint32_t vein;
     float birth0, birth1; /* step of birth at its ends */
     uint8_t order;
-    uint8_t cut;        /* StrokeCut: ends at which it may be cut straight, as the next piece and a wedge cover the rest */
-    Vec2 before;        /* direction of the piece before, if cut at a */
+    uint8_t cut; /* StrokeCut: ends at which it may be cut straight, as the next piece and a wedge cover the rest */
+    Vec2 before; /* direction of the piece before, if cut at a */
 } Stroke;
 
 typedef struct {
@@ -24,11 +24,13 @@ typedef struct {
 /* How far strokes may lie from the veins they stand for. */
 typedef struct {
     double position; /* pixels */
-    double radius;   /* part of the radius, by which position may be off as well when that is more; above 0 age is let go too */
+    double radius; /* part of the radius, by which position may be off as well when that is more; above 0 age is let go
+                      too */
 } StrokeTolerance;
 
-/* Each vein, the run of edges that share its number, becomes a smooth curve through its nodes (Catmull-Rom), as wide at a node as
- * the edges that meet there on average, cut into as few straight pieces as the tolerance allows. O(n log n). */
+/* Each vein, the run of edges that share its number, becomes a smooth curve through its nodes (Catmull-Rom), as wide at
+ * a node as the edges that meet there on average, cut into as few straight pieces as the tolerance allows. O(n log n).
+ */
 Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol);
 void strokes_free(Strokes *s);
 

@@ -12,13 +12,16 @@ static double smoothstep(double t)
 }
 
 /* Depth of the blade between veins below its veins, segments: it arches towards the sunny side. */
-static double arch_depth(const Painter *p) { return 0.1 * p->style.relief * p->spacing; }
+static double arch_depth(const Painter *p)
+{
+    return 0.1 * p->style.relief * p->spacing;
+}
 
 typedef struct {
     Painter *p;
     Plane *plane;
-    float *z;     /* the surface in question, segments */
-    float *sum, *weight; /* blurred surface and blade */
+    float *z;                /* the surface in question, segments */
+    float *sum, *weight;     /* blurred surface and blade */
     double radius, strength; /* of occlusion: width of the blur, segments */
 } Surface;
 
@@ -116,7 +119,8 @@ static void adaxial_row(uint32_t y, void *user)
     }
 }
 
-/* Slope between pixels a and b on either side of `at`, each left out where it is not of the blade; segments per pixel. */
+/* Slope between pixels a and b on either side of `at`, each left out where it is not of the blade; segments per pixel.
+ */
 static double slope(const Surface *s, gsize a, gsize at, gsize b)
 {
     bool has_a = s->p->blade[a] > 0.0f, has_b = s->p->blade[b] > 0.0f;
@@ -168,7 +172,8 @@ static void occlude_row(uint32_t y, void *user)
         float *out = s->plane->px + at;
         if (!(s->p->blade[at] > 0.0f))
             continue;
-        double around = (double)s->sum[at] / MAX((double)s->weight[at], 1e-6), deep = (around - (double)s->z[at]) / s->radius;
+        double around = (double)s->sum[at] / MAX((double)s->weight[at], 1e-6),
+               deep = (around - (double)s->z[at]) / s->radius;
         if (deep > 0.0)
             *out = (float)((double)*out / (1.0 + s->strength * deep));
     }

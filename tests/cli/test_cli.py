@@ -46,8 +46,8 @@ ENDLESS = """\
 [growth]
 kind = marginal
 initial_length = 50
-final_length = 1000000
-step = 0.05
+final_length = 100000
+step = 0.02
 [texture]
 size = 64
 """

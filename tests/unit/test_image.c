@@ -3,10 +3,10 @@
 #include <math.h>
 #include <openexr.h>
 #include <png.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <signal.h>
 
 #include "geom/dmath.h"
 #include "geom/parallel.h"
@@ -16,7 +16,10 @@
 
 static char *dir;
 
-static char *file(const char *name) { return g_build_filename(dir, name, NULL); }
+static char *file(const char *name)
+{
+    return g_build_filename(dir, name, NULL);
+}
 
 static guint files_in_dir(void)
 {
@@ -245,7 +248,7 @@ static float *read_exr(const char *path, const char *channel, uint32_t w, uint32
     }
     int32_t lines;
     exr_get_scanlines_per_chunk(c, 0, &lines);
-    float *out = g_new(float, (gsize)w * h), *other = g_new(float, (gsize)w * (gsize)lines);
+    float *out = g_new(float, (gsize)w *h), *other = g_new(float, (gsize)w *(gsize)lines);
     for (int32_t y = 0; y < (int32_t)h; y += lines) {
         exr_chunk_info_t info;
         exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
@@ -286,7 +289,8 @@ static void test_exr(void)
             g_assert_true(ok);
             for (uint32_t i = 0; i < c; i++) {
                 char *text = NULL;
-                static const char *const attr[] = {"sources.birth_distance_of_all_the_sources", "name_", "leaf_title", "name_"};
+                static const char *const attr[] = {"sources.birth_distance_of_all_the_sources", "name_", "leaf_title",
+                                                   "name_"};
                 float *px = read_exr(path, names[c - 1][i], w, h, attr[i], &text);
                 g_assert_cmpstr(text, ==, value[i % 3 == 0 && i > 0 ? 1 : i]);
                 for (gsize k = 0; k < (gsize)w * h; k++) {
@@ -345,7 +349,8 @@ static void test_failures(void)
     char *nowhere = file("none/x"), *kept = file("kept");
     for (int kind = 0; kind < 2; kind++) {
         GError *error = NULL;
-        g_assert_false(kind ? image_write_png(p, nowhere, 8, NULL, &error) : image_write_exr(p, nowhere, FALSE, NULL, &error));
+        g_assert_false(kind ? image_write_png(p, nowhere, 8, NULL, &error)
+                            : image_write_exr(p, nowhere, FALSE, NULL, &error));
         g_assert_error(error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
         g_assert_nonnull(strstr(error->message, nowhere));
         g_clear_error(&error);

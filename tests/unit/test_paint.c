@@ -115,7 +115,8 @@ static void test_capsule(void)
 {
     uint64_t c = 0;
     for (int i = 0; i < 3000; i++) {
-        Capsule k = capsule_new(vec2(uniform(&c), uniform(&c)), uniform(&c), vec2(3.0 * uniform(&c), uniform(&c)), uniform(&c));
+        Capsule k =
+            capsule_new(vec2(uniform(&c), uniform(&c)), uniform(&c), vec2(3.0 * uniform(&c), uniform(&c)), uniform(&c));
         Vec2 p = vec2(4.0 * uniform(&c) - 0.5, 2.0 * uniform(&c) - 0.5);
         double t, d = capsule_distance(&k, p, &t);
         g_assert_cmpfloat(fabs(d - slow_distance(&k, p)), <, 1e-9);
@@ -398,7 +399,8 @@ static void test_thin_labels(void)
                 lo = lo < 0 ? y : lo;
                 hi = y;
                 g_assert_cmpfloat(fabs((double)width->px[at] - 0.02), <, 1e-6);
-                double edge = ((x + 0.5) / f.scale - 2.0) / 0.6; /* pixels lie up to one beside their place along the vein */
+                double edge =
+                    ((x + 0.5) / f.scale - 2.0) / 0.6; /* pixels lie up to one beside their place along the vein */
                 g_assert_cmpfloat(fabs((double)age->px[at] - edge), <, 1.7 + 1.0 / f.scale);
             }
             g_assert_cmpint(lo, >=, 0);
@@ -452,7 +454,8 @@ static void test_label_priority(void)
 
 /* ---- surface ---- */
 
-/* Over a wide straight vein the surface is the arch relief * r * (1 - 0.625 u²), whose slope across is -1.25 relief u. */
+/* Over a wide straight vein the surface is the arch relief * r * (1 - 0.625 u²), whose slope across is -1.25 relief u.
+ */
 static void test_normals(void)
 {
     static const Vec2 strip[4] = {{-50.0, 0.0}, {50.0, 0.0}, {50.0, 40.0}, {-50.0, 40.0}};
