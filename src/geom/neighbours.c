@@ -12,25 +12,63 @@ static inline bool excludes(uint32_t u, Vec2 pu, double du2, uint32_t v, Vec2 pv
     return precedes(u, du2, v, dv2) && vec_dist2(pu, pv) <= dv2;
 }
 
-/* Does any node exclude v: does one lie in the lune of s and v? */
-static bool lune_taken(const Field *f, Vec2 s, uint32_t v, Vec2 pv, double dv2)
+/* Squared distance from p to the farthest point of the square. */
+static inline double square_far2(QuadSquare q, Vec2 p)
 {
-    QuadSquare stack[128];
+    double dx = fabs(p.x - q.centre.x) + q.half, dy = fabs(p.y - q.centre.y) + q.half;
+    return dx * dx + dy * dy;
+}
+
+/* Does any node exclude x: does one lie in the lune of s and x? With `clear` given, nothing nearer to s than x lies within the disc around
+ * clear->p through s, and what lies wholly in there need not be searched: mostly the crowded part, around x itself. */
+static bool lune_taken(const Field *f, Vec2 s, const Neighbour *x, const Neighbour *clear)
+{
+    QuadSquare stack[QUAD_STACK];
     unsigned depth = 0;
     stack[depth++] = quadtree_root(f->tree);
     while (depth) {
         QuadSquare q = stack[--depth];
-        if (quadtree_square_dist2(q, s) > dv2 || quadtree_square_dist2(q, pv) > dv2)
-            continue;
         const QuadNode *n = &f->tree->node[q.node];
         if (n->child) {
-            for (unsigned k = 0; k < 4; k++)
-                stack[depth++] = quadtree_quadrant(f->tree, q, k);
+            for (unsigned k = 0; k < 4; k++) {
+                QuadSquare c = quadtree_quadrant(f->tree, q, k);
+                if (quadtree_square_dist2(c, x->p) <= x->d2 && quadtree_square_dist2(c, s) <= x->d2 &&
+                    !(clear && square_far2(c, clear->p) < clear->d2 * (1.0 - 1e-9)))
+                    stack[depth++] = c;
+            }
             continue;
         }
-        for (uint32_t u = n->head; u != NO_POINT; u = f->tree->next[u])
-            if (u != v && excludes(u, f->pos[u], vec_dist2(s, f->pos[u]), v, pv, dv2) && (!f->sees || f->sees(f->user, u)))
+        for (uint32_t b = n->bucket; b != NO_POINT; b = f->tree->bucket[b].next) {
+            const QuadBucket *k = &f->tree->bucket[b];
+            for (uint32_t j = 0; j < k->count; j++)
+                if (k->i[j] != x->v && excludes(k->i[j], k->p[j], vec_dist2(s, k->p[j]), x->v, x->p, x->d2) &&
+                    (!f->sees || f->sees(f->user, k->i[j])))
+                    return true;
+        }
+    }
+    return false;
+}
+
+/* The same among the new nodes alone. */
+static bool lune_taken_by_fresh(const Field *f, const Boxtree *fresh, Vec2 s, const Neighbour *x)
+{
+    uint32_t stack[BOXTREE_DEPTH], depth = 0;
+    stack[depth++] = 0;
+    while (depth) {
+        uint32_t k = stack[--depth];
+        const BoxNode *n = &fresh->node[k];
+        if (box_dist2(n->box, s) > x->d2 || box_dist2(n->box, x->p) > x->d2)
+            continue;
+        if (n->right) {
+            stack[depth++] = n->right;
+            stack[depth++] = k + 1;
+            continue;
+        }
+        for (uint32_t i = n->first; i < n->first + n->count; i++) {
+            uint32_t u = fresh->item[i];
+            if (u != x->v && excludes(u, f->pos[u], vec_dist2(s, f->pos[u]), x->v, x->p, x->d2) && (!f->sees || f->sees(f->user, u)))
                 return true;
+        }
     }
     return false;
 }
@@ -215,9 +253,12 @@ static void open_square(Heap *heap, const Field *f, QuadSquare q, Vec2 s)
             push_square(heap, quadtree_quadrant(f->tree, q, k), s);
         return;
     }
-    for (uint32_t v = n->head; v != NO_POINT; v = f->tree->next[v])
-        if (!f->sees || f->sees(f->user, v))
-            heap_push(heap, (Item){vec_dist2(s, f->pos[v]), v, {0}});
+    for (uint32_t b = n->bucket; b != NO_POINT; b = f->tree->bucket[b].next) {
+        const QuadBucket *k = &f->tree->bucket[b];
+        for (uint32_t j = 0; j < k->count; j++)
+            if (!f->sees || f->sees(f->user, k->i[j]))
+                heap_push(heap, (Item){vec_dist2(s, k->p[j]), k->i[j], {0}});
+    }
 }
 
 void hood_find(Hood *h, const Field *f, Vec2 s)
@@ -238,7 +279,7 @@ void hood_find(Hood *h, const Field *f, Vec2 s)
         Neighbour x = {f->pos[it.point], it.d2, it.point};
         if (excluded_by_any(h->m, h->n, &x) || excluded_by_any(h->w, h->n_witnesses, &x))
             continue;
-        if (lune_taken(f, s, x.v, x.p, x.d2))
+        if (lune_taken(f, s, &x, NULL))
             witness_add(h, x);
         else
             member_add(h, x);
@@ -319,6 +360,17 @@ static void sort_out(const Hood *h, const Field *f, const Boxtree *fresh, Comers
     }
 }
 
+/* An old neighbour that helps to clear a newcomer: its lune was empty before this step, so among old nodes only those in the part of x's
+ * lune that sticks out of its own can exclude x. Nearest to x is best: x is mostly its child. NULL when none is farther from s. */
+static const Neighbour *cleared(const Neighbour *old, uint32_t n, const Neighbour *x)
+{
+    const Neighbour *best = NULL;
+    for (uint32_t i = 0; i < n; i++)
+        if (old[i].d2 > x->d2 && (!best || vec_dist2(old[i].p, x->p) < vec_dist2(best->p, x->p)))
+            best = &old[i];
+    return best;
+}
+
 bool hood_update(Hood *h, const Field *f, const Boxtree *fresh)
 {
     Comers c;
@@ -339,7 +391,8 @@ bool hood_update(Hood *h, const Field *f, const Boxtree *fresh)
         const Neighbour *x = &c.comer[k];
         if (excluded_by_any(c.comer, k, x)) /* most are, by another newcomer, before the tree is asked */
             continue;
-        if (lune_taken(f, h->s, x->v, x->p, x->d2))
+        const Neighbour *clear = cleared(old, n_old, x);
+        if ((clear && lune_taken_by_fresh(f, fresh, h->s, x)) || lune_taken(f, h->s, x, clear))
             witness_add(h, *x);
         else
             member_add(h, *x);
@@ -363,7 +416,7 @@ void nearest_find(Hood *h, const Field *f, Vec2 s)
 {
     *h = (Hood){.s = s, .zone = f->field};
     double d2 = HUGE_VAL;
-    uint32_t v = quadtree_nearest(f->tree, f->pos, s, HUGE_VAL, f->sees, f->user, &d2);
+    uint32_t v = quadtree_nearest(f->tree, s, HUGE_VAL, f->sees, f->user, &d2);
     if (v != NO_POINT)
         nearest_set(h, v, f->pos[v], d2);
 }

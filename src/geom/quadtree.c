@@ -2,8 +2,6 @@
 
 #include <glib.h>
 
-enum { BUCKET = 8, DEPTH = 40, STACK = 3 * DEPTH + 4 };
-
 static uint32_t new_nodes(Quadtree *t, uint32_t count)
 {
     if (t->n_nodes + count > t->cap_nodes) {
@@ -12,9 +10,20 @@ static uint32_t new_nodes(Quadtree *t, uint32_t count)
     }
     uint32_t first = t->n_nodes;
     for (uint32_t i = 0; i < count; i++)
-        t->node[first + i] = (QuadNode){0, NO_POINT, 0};
+        t->node[first + i] = (QuadNode){0, NO_POINT};
     t->n_nodes += count;
     return first;
+}
+
+static uint32_t new_bucket(Quadtree *t, uint32_t next)
+{
+    if (t->n_buckets == t->cap_buckets) {
+        t->cap_buckets = MAX(t->cap_buckets + t->cap_buckets / 2, 64);
+        t->bucket = g_renew(QuadBucket, t->bucket, t->cap_buckets);
+    }
+    t->bucket[t->n_buckets].count = 0;
+    t->bucket[t->n_buckets].next = next;
+    return t->n_buckets++;
 }
 
 void quadtree_reset(Quadtree *t, Box2 box)
@@ -22,7 +31,7 @@ void quadtree_reset(Quadtree *t, Box2 box)
     double w = box.x1 - box.x0, h = box.y1 - box.y0;
     t->centre = vec2(box.x0 + w * 0.5, box.y0 + h * 0.5);
     t->half = (w > h ? w : h) * 0.5 * (1.0 + 1e-9);
-    t->n_nodes = t->n = 0;
+    t->n_nodes = t->n_buckets = 0;
     new_nodes(t, 1);
 }
 
@@ -35,7 +44,7 @@ void quadtree_init(Quadtree *t, Box2 box)
 void quadtree_clear(Quadtree *t)
 {
     g_free(t->node);
-    g_free(t->next);
+    g_free(t->bucket);
     *t = (Quadtree){0};
 }
 
@@ -44,72 +53,73 @@ static unsigned quadrant_of(QuadSquare q, Vec2 p)
     return (p.x >= q.centre.x ? 1u : 0u) | (p.y >= q.centre.y ? 2u : 0u);
 }
 
-static void chain(Quadtree *t, uint32_t node, uint32_t i)
+static void put(Quadtree *t, uint32_t node, Vec2 p, uint32_t i)
 {
-    t->next[i] = t->node[node].head;
-    t->node[node].head = i;
-    t->node[node].count++;
+    uint32_t b = t->node[node].bucket;
+    if (b == NO_POINT || t->bucket[b].count == QUAD_BUCKET)
+        t->node[node].bucket = b = new_bucket(t, b);
+    QuadBucket *k = &t->bucket[b];
+    k->p[k->count] = p;
+    k->i[k->count++] = i;
 }
 
-static void split(Quadtree *t, const Vec2 *pos, QuadSquare q)
+/* Makes an inner square of a full leaf; its bucket goes on with its first point's quadrant. */
+static void split(Quadtree *t, QuadSquare q)
 {
+    uint32_t b = t->node[q.node].bucket;
+    QuadBucket full = t->bucket[b];
     uint32_t child = new_nodes(t, 4);
-    uint32_t i = t->node[q.node].head;
-    t->node[q.node] = (QuadNode){child, NO_POINT, 0};
-    while (i != NO_POINT) {
-        uint32_t next = t->next[i];
-        chain(t, child + quadrant_of(q, pos[i]), i);
-        i = next;
-    }
+    t->node[q.node] = (QuadNode){child, NO_POINT};
+    t->bucket[b].count = 0;
+    t->node[child + quadrant_of(q, full.p[0])].bucket = b;
+    for (uint32_t k = 0; k < full.count; k++)
+        put(t, child + quadrant_of(q, full.p[k]), full.p[k], full.i[k]);
 }
 
-void quadtree_add(Quadtree *t, const Vec2 *pos, uint32_t i)
+void quadtree_add(Quadtree *t, Vec2 p, uint32_t i)
 {
-    g_assert(fabs(pos[i].x - t->centre.x) <= t->half && fabs(pos[i].y - t->centre.y) <= t->half);
-    if (i >= t->cap) {
-        t->cap = MAX(t->cap * 2, i + 1024);
-        t->next = g_renew(uint32_t, t->next, t->cap);
-    }
+    g_assert(fabs(p.x - t->centre.x) <= t->half && fabs(p.y - t->centre.y) <= t->half);
     QuadSquare q = quadtree_root(t);
     for (int depth = 0;; depth++) {
         while (t->node[q.node].child) {
-            q = quadtree_quadrant(t, q, quadrant_of(q, pos[i]));
+            q = quadtree_quadrant(t, q, quadrant_of(q, p));
             depth++;
         }
-        if (t->node[q.node].count < BUCKET || depth >= DEPTH) /* deep: coincident points share a leaf */
+        uint32_t b = t->node[q.node].bucket;
+        if (b == NO_POINT || t->bucket[b].count < QUAD_BUCKET || depth >= QUAD_DEPTH - 2) /* deep: coincident points share a leaf */
             break;
-        split(t, pos, q);
+        split(t, q);
     }
-    chain(t, q.node, i);
-    t->n++;
+    put(t, q.node, p, i);
 }
 
-uint32_t quadtree_nearest(const Quadtree *t, const Vec2 *pos, Vec2 p, double bound2, PointFilter filter, const void *user,
-                          double *d2)
+uint32_t quadtree_nearest(const Quadtree *t, Vec2 p, double bound2, PointFilter filter, const void *user, double *d2)
 {
     uint32_t best = NO_POINT;
     double best2 = bound2;
-    QuadSquare stack[STACK];
+    QuadSquare stack[QUAD_STACK];
     unsigned depth = 0;
     stack[depth++] = quadtree_root(t);
     while (depth) {
         QuadSquare q = stack[--depth];
         if (quadtree_square_dist2(q, p) > best2)
             continue;
-        const QuadNode *n = &t->node[q.node];
-        if (n->child) {
+        if (t->node[q.node].child) {
             unsigned near = quadrant_of(q, p);
             for (unsigned k = 4; k-- > 0;)
                 stack[depth++] = quadtree_quadrant(t, q, near ^ k); /* nearest on top */
             continue;
         }
-        for (uint32_t i = n->head; i != NO_POINT; i = t->next[i]) {
-            double d = vec_dist2(pos[i], p);
-            if (d < best2 || (d == best2 && best != NO_POINT && i < best)) {
-                if (filter && !filter(user, i))
-                    continue;
-                best2 = d;
-                best = i;
+        for (uint32_t b = t->node[q.node].bucket; b != NO_POINT; b = t->bucket[b].next) {
+            const QuadBucket *n = &t->bucket[b];
+            for (uint32_t k = 0; k < n->count; k++) {
+                double d = vec_dist2(n->p[k], p);
+                if (d < best2 || (d == best2 && best != NO_POINT && n->i[k] < best)) {
+                    if (filter && !filter(user, n->i[k]))
+                        continue;
+                    best2 = d;
+                    best = n->i[k];
+                }
             }
         }
     }
@@ -118,26 +128,27 @@ uint32_t quadtree_nearest(const Quadtree *t, const Vec2 *pos, Vec2 p, double bou
     return best;
 }
 
-bool quadtree_any_within(const Quadtree *t, const Vec2 *pos, Vec2 p, double r)
+bool quadtree_any_within(const Quadtree *t, Vec2 p, double r)
 {
     double r2 = r * r;
-    QuadSquare stack[STACK];
+    QuadSquare stack[QUAD_STACK];
     unsigned depth = 0;
     stack[depth++] = quadtree_root(t);
     while (depth) {
         QuadSquare q = stack[--depth];
-        if (quadtree_square_dist2(q, p) >= r2)
-            continue;
-        const QuadNode *n = &t->node[q.node];
-        if (n->child) {
+        if (t->node[q.node].child) {
             unsigned near = quadrant_of(q, p);
-            for (unsigned k = 4; k-- > 0;)
-                stack[depth++] = quadtree_quadrant(t, q, near ^ k);
+            for (unsigned k = 4; k-- > 0;) {
+                QuadSquare c = quadtree_quadrant(t, q, near ^ k);
+                if (quadtree_square_dist2(c, p) < r2)
+                    stack[depth++] = c;
+            }
             continue;
         }
-        for (uint32_t i = n->head; i != NO_POINT; i = t->next[i])
-            if (vec_dist2(pos[i], p) < r2)
-                return true;
+        for (uint32_t b = t->node[q.node].bucket; b != NO_POINT; b = t->bucket[b].next)
+            for (uint32_t k = 0; k < t->bucket[b].count; k++)
+                if (vec_dist2(t->bucket[b].p[k], p) < r2)
+                    return true;
     }
     return false;
 }

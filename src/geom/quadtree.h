@@ -1,5 +1,5 @@
-/* A bucket quadtree over points that only ever come: the index of the vein nodes. It holds indices into an array of positions
- * that the caller keeps (and passes to each query), 4 bytes a point and about 6 for the tree. */
+/* A bucket quadtree over points that only ever come: the index of the vein nodes. Leaves keep their points' places beside each other,
+ * because a query that chased indices through the whole array would mostly wait for memory. About 40 bytes a point. */
 #ifndef GEOM_QUADTREE_H
 #define GEOM_QUADTREE_H
 
@@ -7,10 +7,18 @@
 
 #define NO_POINT UINT32_MAX
 
+enum { QUAD_BUCKET = 8 };
+
 typedef struct {
-    uint32_t child; /* first of four, 0 for a leaf */
-    uint32_t head;  /* leaf: first point of its chain */
-    uint32_t count; /* leaf: points in the chain */
+    Vec2 p[QUAD_BUCKET];
+    uint32_t i[QUAD_BUCKET]; /* what the points are called */
+    uint32_t count;
+    uint32_t next; /* overflow of a leaf of coincident points, else NO_POINT */
+} QuadBucket;
+
+typedef struct {
+    uint32_t child;  /* first of four, 0 for a leaf */
+    uint32_t bucket; /* leaf: its points, NO_POINT when there are none */
 } QuadNode;
 
 typedef struct {
@@ -18,8 +26,8 @@ typedef struct {
     double half; /* of the root square's side */
     QuadNode *node;
     uint32_t n_nodes, cap_nodes;
-    uint32_t *next; /* [cap] chain of a leaf's points */
-    uint32_t n, cap;
+    QuadBucket *bucket;
+    uint32_t n_buckets, cap_buckets;
 } Quadtree;
 
 /* A square of the tree during a walk. */
@@ -29,12 +37,14 @@ typedef struct {
     double half;
 } QuadSquare;
 
+enum { QUAD_DEPTH = 40, QUAD_STACK = 3 * QUAD_DEPTH + 4 };
+
 void quadtree_init(Quadtree *t, Box2 box); /* all points must lie in the square around box */
 void quadtree_clear(Quadtree *t);          /* frees */
 void quadtree_reset(Quadtree *t, Box2 box); /* empties, keeping the memory */
 
-/* Adds point `i`; pos[i] is its place. O(log n). */
-void quadtree_add(Quadtree *t, const Vec2 *pos, uint32_t i);
+/* Adds point `i` at p. O(log n). */
+void quadtree_add(Quadtree *t, Vec2 p, uint32_t i);
 
 static inline QuadSquare quadtree_root(const Quadtree *t) { return (QuadSquare){0, t->centre, t->half}; }
 
@@ -59,10 +69,9 @@ typedef bool (*PointFilter)(const void *user, uint32_t i);
 
 /* Nearest point to p that passes the filter and is nearer than sqrt(bound2); of equally near ones the smallest index.
  * Returns NO_POINT when there is none, else sets *d2. O(log n) expected. */
-uint32_t quadtree_nearest(const Quadtree *t, const Vec2 *pos, Vec2 p, double bound2, PointFilter filter, const void *user,
-                          double *d2);
+uint32_t quadtree_nearest(const Quadtree *t, Vec2 p, double bound2, PointFilter filter, const void *user, double *d2);
 
 /* Whether a point lies nearer to p than r. */
-bool quadtree_any_within(const Quadtree *t, const Vec2 *pos, Vec2 p, double r);
+bool quadtree_any_within(const Quadtree *t, Vec2 p, double r);
 
 #endif

@@ -23,7 +23,7 @@ void zones_init(Zones *z, Box2 field, double cell)
 {
     *z = (Zones){.field = field};
     double w = field.x1 - field.x0, h = field.y1 - field.y0, most = w > h ? w : h;
-    z->cell = cell > most / 512.0 ? cell : most / 512.0;
+    z->cell = cell > most / 128.0 ? cell : most / 128.0;
     z->nx[0] = (uint32_t)(w / z->cell) + 1;
     z->ny[0] = (uint32_t)(h / z->cell) + 1;
     z->levels = 1;

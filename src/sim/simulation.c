@@ -38,7 +38,7 @@ static void carry_along(Simulation *s)
         v->pos[i] = blade_place(s->blade, v->material[i]);
     quadtree_reset(&v->tree, box_grow(s->blade->widest, 4.0));
     for (uint32_t i = 0; i < v->n; i++)
-        quadtree_add(&v->tree, v->pos, i);
+        quadtree_add(&v->tree, v->pos[i], i);
     for (uint32_t k = 0; k < s->n_sources; k++) {
         Source *src = &s->source[k];
         Hood old = src->hood;

@@ -70,7 +70,7 @@ static void source_add(Simulation *s, Vec2 p)
 static bool vacant(const Simulation *s, Vec2 p)
 {
     return !zones_any_within(&s->zones, s->place, p, s->def.birth_distance_sources * s->blade->unit) &&
-           !quadtree_any_within(&s->veins.tree, s->veins.pos, p, vein_clearance(s));
+           !quadtree_any_within(&s->veins.tree, p, vein_clearance(s));
 }
 
 /* A point uniform in the blade, by rejection from its box; FALSE in the (practically impossible) case of a long run of misses. */
@@ -114,7 +114,7 @@ static void place_waiting(Simulation *s)
             s->waiting[keep++] = s->waiting[i]; /* the margin has not passed it yet */
             continue;
         }
-        if (listed || !quadtree_any_within(&s->veins.tree, s->veins.pos, p, vein_clearance(s)))
+        if (listed || !quadtree_any_within(&s->veins.tree, p, vein_clearance(s)))
             source_add(s, p);
     }
     /* those that still wait move up to the end of the part just read */

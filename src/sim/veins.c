@@ -35,7 +35,7 @@ uint32_t veins_add(Veins *v, Vec2 pos, uint32_t parent, uint32_t step)
     v->parent[i] = parent;
     v->birth[i] = step;
     v->pull[i] = NO_POINT;
-    quadtree_add(&v->tree, v->pos, i);
+    quadtree_add(&v->tree, v->pos[i], i);
     return i;
 }
 

@@ -1,0 +1,681 @@
+/* Neighbourhoods against plain searches written from the definitions, and the three indices against scans of all points. */
+#include <glib.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/neighbours.h"
+#include "geom/random.h"
+#include "geom/zones.h"
+
+/* ---- point sets ---- */
+
+/* Numbers in [0, 1), one after another. */
+typedef struct {
+    uint64_t seed, index;
+} Dice;
+
+static double roll(Dice *d)
+{
+    double u[2];
+    random_pair(d->seed, 1000, 0, d->index++, u);
+    return u[0];
+}
+
+static uint32_t pick(Dice *d, uint32_t n) { return (uint32_t)(roll(d) * n); }
+
+typedef enum {
+    SET_RANDOM,
+    SET_CLUSTERS,
+    SET_GRID,
+    SET_HEXAGONS,
+    SET_CIRCLE,
+    SET_COINCIDENT,
+    SET_ROW,
+    SET_DIAGONAL,
+    SET_NEARLY_GRID,
+    SET_NEARLY_CIRCLE,
+    SET_ONE_SIDE,
+    SET_TREE_BORDERS,
+    SET_WALK,
+    SET_COUNT
+} SetKind;
+
+static const Box2 field_box = {-40, -38, 40, 41};
+
+/* Lattice points at distance 65 from the origin, scaled to 13: as cocircular as points can be. */
+static Vec2 on_circle(uint32_t i)
+{
+    static const int at[9][2] = {{65, 0}, {63, 16}, {60, 25}, {56, 33}, {52, 39}, {39, 52}, {33, 56}, {25, 60}, {16, 63}};
+    double x = at[i % 9][0] / 5.0, y = at[i % 9][1] / 5.0;
+    return (i / 9) % 4 == 0 ? vec2(x, y) : (i / 9) % 4 == 1 ? vec2(-y, x) : (i / 9) % 4 == 2 ? vec2(-x, -y) : vec2(y, -x);
+}
+
+/* A centre of a random square of the quadtree over field_box, by the tree's own arithmetic: the worst place for its pruning. */
+static Vec2 on_border(Dice *d)
+{
+    Quadtree t;
+    quadtree_init(&t, field_box);
+    Vec2 c = t.centre;
+    double half = t.half;
+    for (uint32_t k = pick(d, 5); k > 0; k--) {
+        half *= 0.5;
+        c = vec2(c.x + (roll(d) < 0.5 ? half : -half), c.y + (roll(d) < 0.5 ? half : -half));
+    }
+    quadtree_clear(&t);
+    return c;
+}
+
+static Vec2 set_point(SetKind kind, uint32_t i, Vec2 last, Dice *d)
+{
+    double x = (roll(d) - 0.5) * 50, y = (roll(d) - 0.5) * 50, tiny = 1e-9 * (roll(d) - 0.5);
+    switch (kind) {
+    case SET_CLUSTERS:
+        return vec2((i % 3) * 14.0 - 14 + x * 0.02, (i % 2) * 20.0 - 10 + y * 0.02);
+    case SET_GRID:
+        return vec2(pick(d, 15) - 7.0, pick(d, 15) - 7.0);
+    case SET_HEXAGONS: {
+        double row = pick(d, 15) - 7.0;
+        return vec2(pick(d, 15) - 7.0 + (fmod(fabs(row), 2.0) == 1.0 ? 0.5 : 0.0), row * sqrt(0.75));
+    }
+    case SET_CIRCLE:
+        return on_circle(pick(d, 36));
+    case SET_COINCIDENT:
+        return vec2(pick(d, 3) * 4.0, pick(d, 3) * 3.0);
+    case SET_ROW:
+        return vec2(pick(d, 40) - 20.0, 2);
+    case SET_DIAGONAL:
+        return vec2(pick(d, 40) - 20.0, pick(d, 2) ? 0.0 : 1.0);
+    case SET_NEARLY_GRID:
+        return vec2(pick(d, 12) - 6.0 + tiny, pick(d, 12) - 6.0 + 1e-9 * roll(d));
+    case SET_NEARLY_CIRCLE:
+        return vec_scale(on_circle(pick(d, 36)), 1.0 + tiny);
+    case SET_ONE_SIDE:
+        return vec2(10 + 0.3 * x, y * 0.3);
+    case SET_TREE_BORDERS:
+        return on_border(d);
+    case SET_WALK: { /* like a vein: a chain of unit steps that turns a little */
+        if (i % 40 == 0)
+            return vec2(x * 0.6, y * 0.6);
+        Vec2 p = vec2(last.x + 0.8, last.y + (i / 40 % 2 ? 0.6 : -0.6));
+        return fabs(p.x) < 35 && fabs(p.y) < 35 ? p : vec2(x * 0.5, y * 0.5);
+    }
+    default:
+        return vec2(x, y);
+    }
+}
+
+/* Where a source is looked from: places that make ties, a node's own place, anywhere, far away. */
+static Vec2 set_source(SetKind kind, uint32_t k, const Vec2 *pos, uint32_t n, Dice *d)
+{
+    switch (k % 5) {
+    case 0:
+        return kind == SET_CIRCLE || kind == SET_NEARLY_CIRCLE ? vec2(0, 0) : vec2(pick(d, 12) - 6.0, pick(d, 12) - 6.0);
+    case 1:
+        return kind == SET_TREE_BORDERS ? on_border(d) : vec2(pick(d, 12) - 5.5, pick(d, 12) - 5.5);
+    case 2:
+        return pos[pick(d, n)];
+    case 3:
+        return vec2((roll(d) - 0.5) * 30, (roll(d) - 0.5) * 30);
+    default:
+        return vec2(-36 + roll(d), (roll(d) - 0.5) * 60);
+    }
+}
+
+/* ---- what a source may see ---- */
+
+typedef struct {
+    int rule; /* 0 all, 1 a third of the nodes is hidden, 2 a half-plane, 3 nothing */
+    const Vec2 *pos;
+} Sight;
+
+static bool seen(const void *user, uint32_t i)
+{
+    const Sight *s = user;
+    return s->rule == 0 || (s->rule == 1 && i % 3 != 1) || (s->rule == 2 && s->pos[i].x + 0.3 * s->pos[i].y > 1.0);
+}
+
+/* ---- plain twins ---- */
+
+static double plain_dist2(Vec2 a, Vec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+
+/* Nearer to s than v: of two equally near ones the smaller index. */
+static bool plain_nearer(const Vec2 *pos, Vec2 s, uint32_t u, uint32_t v)
+{
+    double du = plain_dist2(pos[u], s), dv = plain_dist2(pos[v], s);
+    return du < dv || (du == dv && u < v);
+}
+
+/* Eq. 2 with that rule: u shuts v out when it is nearer to s and v is not nearer to s than to u. */
+static bool plain_shuts(const Vec2 *pos, Vec2 s, uint32_t u, uint32_t v)
+{
+    return u != v && plain_nearer(pos, s, u, v) && plain_dist2(pos[u], pos[v]) <= plain_dist2(pos[v], s);
+}
+
+static uint32_t plain_relative(const Vec2 *pos, uint32_t n, Vec2 s, const Sight *sight, uint32_t *out)
+{
+    uint32_t m = 0;
+    for (uint32_t v = 0; v < n; v++) {
+        bool in = seen(sight, v);
+        for (uint32_t u = 0; u < n && in; u++)
+            in = !(plain_shuts(pos, s, u, v) && seen(sight, u));
+        if (in)
+            out[m++] = v;
+    }
+    return m;
+}
+
+static uint32_t plain_nearest(const Vec2 *pos, uint32_t n, Vec2 s, const Sight *sight)
+{
+    uint32_t best = NO_POINT;
+    for (uint32_t v = 0; v < n; v++)
+        if (seen(sight, v) && (best == NO_POINT || plain_nearer(pos, s, v, best)))
+            best = v;
+    return best;
+}
+
+typedef enum { NO, PERHAPS, YES } Answer;
+
+/* Is v a Delaunay neighbour of s: is there a disc with both on its rim and no other node inside? Its centre is m + t n, with m half
+ * way and n across; every other node u allows a half-line of t. PERHAPS when what is left is too short to trust. */
+static Answer plain_delaunay(const Vec2 *pos, uint32_t n, Vec2 s, uint32_t v, const Sight *sight)
+{
+    long double px = (long double)pos[v].x - (long double)s.x, py = (long double)pos[v].y - (long double)s.y;
+    long double p2 = px * px + py * py, lo = -1e9L, hi = 1e9L, doubt = 1e-6L;
+    bool shared = false;
+    if (p2 < 1e-12L)
+        return PERHAPS;
+    for (uint32_t u = 0; u < n; u++) {
+        if (u == v || !seen(sight, u))
+            continue;
+        if (plain_dist2(pos[u], pos[v]) < 1e-12) {
+            shared = true; /* of nodes at one place rounding chooses */
+            continue;
+        }
+        /* |c - u| >= |c - s| with c = p / 2 + t (-py, px), all relative to s: 2 c·q <= q² */
+        long double qx = (long double)pos[u].x - (long double)s.x, qy = (long double)pos[u].y - (long double)s.y;
+        long double room = qx * qx + qy * qy - (px * qx + py * qy), slope = 2 * (px * qy - py * qx);
+        if (fabsl(slope) < 1e-14L * p2) {
+            if (room < -1e-9L)
+                return NO;
+            if (room < 1e-9L)
+                return PERHAPS;
+        } else if (slope > 0) {
+            hi = MIN(hi, room / slope);
+        } else {
+            lo = MAX(lo, room / slope);
+        }
+    }
+    /* as long as it is far from s its ends are badly known: scale the doubt */
+    long double end = MIN(fabsl(lo), fabsl(hi)), length = hi - lo;
+    doubt *= 1 + end * end;
+    return length > doubt ? shared ? PERHAPS : YES : length < -doubt ? NO : PERHAPS;
+}
+
+/* Urquhart: Delaunay neighbours that no other Delaunay neighbour shuts out. */
+static void plain_urquhart(const Vec2 *pos, uint32_t n, Vec2 s, const Sight *sight, Answer *out)
+{
+    Answer *delaunay = g_new(Answer, n);
+    for (uint32_t v = 0; v < n; v++)
+        delaunay[v] = seen(sight, v) ? plain_delaunay(pos, n, s, v, sight) : NO;
+    for (uint32_t v = 0; v < n; v++) {
+        out[v] = delaunay[v];
+        for (uint32_t u = 0; u < n && out[v] != NO; u++)
+            if (delaunay[u] != NO && plain_shuts(pos, s, u, v))
+                out[v] = delaunay[u] == YES ? NO : PERHAPS;
+    }
+    g_free(delaunay);
+}
+
+/* ---- comparison ---- */
+
+static const char *const set_name[SET_COUNT] = {"random", "clusters", "grid", "hexagons", "circle", "coincident", "row", "diagonal",
+                                                "nearly grid", "nearly circle", "one side", "tree borders", "walk"};
+
+static int by_index(const void *a, const void *b)
+{
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static uint32_t members(const Hood *h, const Vec2 *pos, uint32_t out[HOOD_MAX])
+{
+    for (uint32_t i = 0; i < h->n; i++) {
+        out[i] = h->m[i].v;
+        g_assert_cmpfloat(h->m[i].p.x, ==, pos[out[i]].x);
+        g_assert_cmpfloat(h->m[i].p.y, ==, pos[out[i]].y);
+        g_assert_cmpfloat(h->m[i].d2, ==, plain_dist2(pos[out[i]], h->s));
+    }
+    qsort(out, h->n, sizeof *out, by_index);
+    return h->n;
+}
+
+typedef struct {
+    SetKind kind;
+    Vec2 *pos;
+    uint32_t n;
+    Sight sight;
+    Quadtree tree;
+    Boxtree fresh;
+} Case;
+
+static Field field_of(const Case *c) { return (Field){c->pos, &c->tree, field_box, c->sight.rule ? seen : NULL, &c->sight}; }
+
+static void fail_at(const Case *c, const Hood *h, const char *what)
+{
+    g_error("%s: %s, sight %d, %u nodes, source at %.17g,%.17g", what, set_name[c->kind], c->sight.rule, c->n, h->s.x, h->s.y);
+}
+
+static void check_relative(const Case *c, const Hood *h, const char *what)
+{
+    uint32_t got[HOOD_MAX], *want = g_new(uint32_t, c->n + 1);
+    uint32_t n = members(h, c->pos, got), m = plain_relative(c->pos, c->n, h->s, &c->sight, want);
+    if (n != m || memcmp(got, want, sizeof *got * n) != 0)
+        fail_at(c, h, what);
+    g_free(want);
+}
+
+static void check_nearest(const Case *c, const Hood *h, const char *what)
+{
+    uint32_t got[HOOD_MAX], n = members(h, c->pos, got), want = plain_nearest(c->pos, c->n, h->s, &c->sight);
+    if (n != (want != NO_POINT) || (n && got[0] != want))
+        fail_at(c, h, what);
+}
+
+static void check_urquhart(const Case *c, const Hood *h, const char *what, uint32_t *sure)
+{
+    uint32_t got[HOOD_MAX], n = members(h, c->pos, got);
+    Answer *want = g_new(Answer, c->n);
+    plain_urquhart(c->pos, c->n, h->s, &c->sight, want);
+    for (uint32_t v = 0; v < c->n; v++) {
+        bool in = bsearch(&v, got, n, sizeof *got, by_index) != NULL;
+        *sure += want[v] == YES;
+        if ((want[v] == YES && !in) || (want[v] == NO && in)) {
+            g_printerr("# node %u at %.17g,%.17g: %s\n", v, c->pos[v].x, c->pos[v].y, in ? "one too many" : "missing");
+            fail_at(c, h, what);
+        }
+    }
+    g_free(want);
+}
+
+/* Shows a set to its sources in batches, comparing after each. */
+static void check_set(SetKind kind, uint32_t n, uint32_t first, uint32_t batch, int rule, uint64_t seed, uint32_t *sure)
+{
+    enum { SOURCES = 10 };
+    Dice d = {seed, 0};
+    Case c = {.kind = kind, .pos = g_new(Vec2, n), .n = first};
+    c.sight = (Sight){rule, c.pos};
+    for (uint32_t i = 0; i < n; i++)
+        c.pos[i] = set_point(kind, i, i ? c.pos[i - 1] : vec2(0, 0), &d);
+    quadtree_init(&c.tree, field_box);
+    for (uint32_t i = 0; i < first; i++)
+        quadtree_add(&c.tree, c.pos[i], i);
+    Hood near[SOURCES], hood[SOURCES], urquhart[SOURCES];
+    Cell cell[SOURCES] = {0}, scratch = {0};
+    Field f = field_of(&c);
+    for (uint32_t k = 0; k < SOURCES; k++) {
+        Vec2 s = set_source(kind, k, c.pos, n, &d);
+        nearest_find(&near[k], &f, s);
+        hood_find(&hood[k], &f, s);
+        urquhart_find(&urquhart[k], &cell[k], &f, s);
+    }
+    for (uint32_t step = 0; c.n < n || step == 0; step++) {
+        uint32_t from = c.n, to = step ? MIN(n, from + batch) : from;
+        uint32_t *item = g_new(uint32_t, n);
+        for (uint32_t i = from; i < to; i++) {
+            quadtree_add(&c.tree, c.pos[i], i);
+            item[i - from] = i;
+        }
+        c.n = to;
+        f = field_of(&c);
+        boxtree_build(&c.fresh, c.pos, item, to - from);
+        g_free(item);
+        bool look = step % 3 == 0 || to == n; /* the twins are slow */
+        for (uint32_t k = 0; k < SOURCES; k++) {
+            if (to > from) {
+                uint32_t before[HOOD_MAX], after[HOOD_MAX], n0 = members(&hood[k], c.pos, before);
+                bool changed = hood_update(&hood[k], &f, &c.fresh);
+                uint32_t n1 = members(&hood[k], c.pos, after);
+                bool differs = n0 != n1 || memcmp(before, after, sizeof *before * n0) != 0;
+                if (differs && !changed)
+                    fail_at(&c, &hood[k], "an unreported change");
+                nearest_update(&near[k], &f, &c.fresh);
+                urquhart_update(&urquhart[k], &cell[k], &f, &c.fresh);
+            }
+            if (!look)
+                continue;
+            Hood h;
+            check_nearest(&c, &near[k], "nearest_update");
+            nearest_find(&h, &f, near[k].s);
+            check_nearest(&c, &h, "nearest_find");
+            check_relative(&c, &hood[k], "hood_update");
+            hood_find(&h, &f, near[k].s);
+            check_relative(&c, &h, "hood_find");
+            check_urquhart(&c, &urquhart[k], "urquhart_update", sure);
+            urquhart_find(&h, &scratch, &f, near[k].s);
+            check_urquhart(&c, &h, "urquhart_find", sure);
+        }
+    }
+    for (uint32_t k = 0; k < SOURCES; k++)
+        cell_clear(&cell[k]);
+    cell_clear(&scratch);
+    quadtree_clear(&c.tree);
+    boxtree_clear(&c.fresh);
+    g_free(c.pos);
+}
+
+static void test_sets(gconstpointer data)
+{
+    SetKind kind = (SetKind)GPOINTER_TO_UINT(data);
+    static const uint32_t batch[] = {1, 4, 13, 60};
+    uint32_t sure = 0;
+    for (uint32_t k = 0; k < G_N_ELEMENTS(batch); k++)
+        for (int rule = 0; rule < 3; rule++)
+            check_set(kind, batch[k] == 1 ? 40 : 130, k == 1 ? 1 : 10, batch[k], rule, 100 * (uint64_t)kind + 10 * k + (uint64_t)rule, &sure);
+    check_set(kind, 60, 5, 20, 3, 1, &sure);
+    if (kind != SET_COINCIDENT)
+        g_assert_cmpuint(sure, >, 500); /* most cases are no borderline */
+}
+
+/* Many small sets: borderline cases come in numbers. */
+static void test_many(void)
+{
+    uint32_t sure = 0;
+    for (uint64_t seed = 0; seed < 400; seed++)
+        for (uint32_t kind = 0; kind < SET_COUNT; kind++)
+            check_set((SetKind)kind, 14, 4, 1 + (uint32_t)(seed % 4), (int)(seed % 3), 5000 + seed * SET_COUNT + kind, &sure);
+}
+
+/* What eq. 2 says of a few nodes, by hand. */
+static void test_by_hand(void)
+{
+    static const struct {
+        Vec2 node[4];
+        uint32_t n, want; /* mask */
+    } hand[] = {
+        {{{1, 0}}, 1, 1},                           /* one node */
+        {{{1, 0}, {2, 0}}, 2, 1},                   /* behind it another */
+        {{{1, 0}, {-2, 0}}, 2, 3},                  /* opposite */
+        {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}, 4, 15}, /* a cross */
+        {{{2, 0}, {1.5, 1.5}}, 2, 1},               /* 45° apart */
+        {{{3, 0}, {0.5, 3}}, 2, 3},                 /* more than 60° apart */
+        {{{5, 5}, {4, 5}, {5, 4}}, 3, 2},           /* a tie: the first of the two nearest, and it shuts out the rest */
+    };
+    for (uint32_t k = 0; k < G_N_ELEMENTS(hand); k++) {
+        Quadtree t;
+        quadtree_init(&t, field_box);
+        for (uint32_t i = 0; i < hand[k].n; i++)
+            quadtree_add(&t, hand[k].node[i], i);
+        Field f = {hand[k].node, &t, field_box, NULL, NULL};
+        Hood h;
+        Cell c = {0};
+        hood_find(&h, &f, vec2(0, 0));
+        uint32_t relative = 0, urquhart = 0;
+        for (uint32_t i = 0; i < h.n; i++)
+            relative |= 1u << h.m[i].v;
+        urquhart_find(&h, &c, &f, vec2(0, 0));
+        for (uint32_t i = 0; i < h.n; i++)
+            urquhart |= 1u << h.m[i].v;
+        g_assert_cmpuint(relative, ==, hand[k].want);
+        g_assert_cmpuint(urquhart, ==, hand[k].want);
+        cell_clear(&c);
+        quadtree_clear(&t);
+    }
+}
+
+/* No more than five neighbours, however many nodes lie around (a regular hexagon included). */
+static void test_at_most_five(void)
+{
+    for (uint32_t turn = 0; turn < 4000; turn++) {
+        Dice d = {77, turn * 8};
+        double x = roll(&d) - 0.5, y = roll(&d) - 0.5, h = sqrt(0.75);
+        Vec2 s = vec2(roll(&d) * (turn % 2), roll(&d) * (turn % 2)), pos[6];
+        for (uint32_t i = 0; i < 6; i++) {
+            pos[i] = vec_add(s, vec2(x, y));
+            double rx = 0.5 * x - h * y, ry = h * x + 0.5 * y; /* by 60° */
+            x = rx;
+            y = ry;
+        }
+        Quadtree t;
+        quadtree_init(&t, field_box);
+        for (uint32_t i = 0; i < 6; i++)
+            quadtree_add(&t, pos[i], i);
+        Field f = {pos, &t, field_box, NULL, NULL};
+        Hood hood;
+        hood_find(&hood, &f, s);
+        g_assert_cmpuint(hood.n, >=, 1);
+        g_assert_cmpuint(hood.n, <=, 6); /* rounding may part all six by a hair more than 60° */
+        Case c = {.kind = SET_HEXAGONS, .pos = pos, .n = 6, .sight = {0, pos}};
+        check_relative(&c, &hood, "hexagon");
+        quadtree_clear(&t);
+    }
+}
+
+/* ---- zones of hoods ---- */
+
+static bool near_zone(Box2 z, Vec2 p) { return box_has(z, p); }
+
+/* A node outside the zone changes nothing. */
+static void test_zone_holds(void)
+{
+    uint32_t outside = 0;
+    for (uint64_t round = 0; round < 300; round++) {
+        Dice d = {900 + round, 0};
+        SetKind kind = (SetKind)(round % SET_COUNT);
+        uint32_t n = 8 + pick(&d, 60);
+        Case c = {.kind = kind, .pos = g_new(Vec2, n + 1), .n = n + 1};
+        c.sight = (Sight){(int)(round / SET_COUNT % 3), c.pos};
+        quadtree_init(&c.tree, field_box);
+        for (uint32_t i = 0; i < n; i++) {
+            c.pos[i] = set_point(kind, i, i ? c.pos[i - 1] : vec2(0, 0), &d);
+            quadtree_add(&c.tree, c.pos[i], i);
+        }
+        Field f = field_of(&c);
+        Vec2 s = set_source(kind, (uint32_t)round, c.pos, n, &d);
+        Hood near, hood, urquhart;
+        Cell cell = {0};
+        nearest_find(&near, &f, s);
+        hood_find(&hood, &f, s);
+        urquhart_find(&urquhart, &cell, &f, s);
+        for (uint32_t k = 0; k < 60; k++) {
+            double spread = k % 2 ? 70 : 25;
+            Vec2 centre = k % 3 ? vec2(0, 0) : s;
+            Vec2 p = vec2(centre.x + (roll(&d) - 0.5) * spread, centre.y + (roll(&d) - 0.5) * spread);
+            if (!box_has(field_box, p))
+                continue;
+            c.pos[n] = p;
+            uint32_t sure = 0;
+            if (!near_zone(near.zone, p))
+                check_nearest(&c, &near, "zone of nearest");
+            if (!near_zone(hood.zone, p))
+                check_relative(&c, &hood, "zone of the relative hood");
+            if (!near_zone(urquhart.zone, p))
+                check_urquhart(&c, &urquhart, "zone of Urquhart's hood", &sure);
+            outside += !near_zone(hood.zone, p);
+        }
+        cell_clear(&cell);
+        quadtree_clear(&c.tree);
+        g_free(c.pos);
+    }
+    g_assert_cmpuint(outside, >, 300 * 60 / 10); /* zones are no excuse: they leave much out */
+}
+
+/* ---- quadtree ---- */
+
+static void test_quadtree(void)
+{
+    for (uint32_t kind = 0; kind < SET_COUNT; kind++) {
+        enum { N = 500 };
+        Dice d = {31 + kind, 0};
+        Vec2 pos[N];
+        Quadtree t;
+        quadtree_init(&t, field_box);
+        Sight sight = {(int)(kind % 3), pos};
+        for (int round = 0; round < 2; round++, quadtree_reset(&t, field_box)) /* the second time in reused memory */
+            for (uint32_t i = 0; i < N; i++) {
+                pos[i] = set_point((SetKind)kind, i, i ? pos[i - 1] : vec2(0, 0), &d);
+                quadtree_add(&t, pos[i], i);
+                Vec2 p = set_source((SetKind)kind, i, pos, i + 1, &d);
+                double bound = i % 4 ? roll(&d) * 100 : HUGE_VAL, r = roll(&d) * 5, d2 = -1.0;
+                uint32_t want = plain_nearest(pos, i + 1, p, &sight);
+                if (want != NO_POINT && !(plain_dist2(pos[want], p) < bound))
+                    want = NO_POINT;
+                uint32_t got = quadtree_nearest(&t, p, bound, sight.rule ? seen : NULL, &sight, &d2);
+                if (got != want)
+                    g_error("quadtree_nearest: %s, %u nodes, from %.17g,%.17g: %u instead of %u", set_name[kind], i + 1, p.x, p.y, got, want);
+                g_assert_cmpfloat(d2, ==, want == NO_POINT ? -1.0 : plain_dist2(pos[want], p));
+                bool within = false;
+                for (uint32_t k = 0; k <= i; k++)
+                    within |= plain_dist2(pos[k], p) < r * r;
+                g_assert_cmpint(quadtree_any_within(&t, p, r), ==, within);
+            }
+        quadtree_clear(&t);
+    }
+    Quadtree empty;
+    double d2;
+    quadtree_init(&empty, field_box);
+    g_assert_cmpuint(quadtree_nearest(&empty, vec2(1, 1), HUGE_VAL, NULL, NULL, &d2), ==, NO_POINT);
+    g_assert_false(quadtree_any_within(&empty, vec2(1, 1), 10));
+    quadtree_clear(&empty);
+}
+
+/* ---- box tree ---- */
+
+static void test_boxtree(void)
+{
+    Boxtree t = {0};
+    for (uint32_t round = 0; round < 60; round++) {
+        Dice d = {500 + round, 0};
+        uint32_t n = round < 12 ? round : 1 + pick(&d, 300), *item = g_new(uint32_t, n + 1);
+        Vec2 *pos = g_new(Vec2, 2 * n + 1);
+        for (uint32_t i = 0; i < 2 * n; i++)
+            pos[i] = set_point((SetKind)(round % SET_COUNT), i, i ? pos[i - 1] : vec2(0, 0), &d);
+        for (uint32_t i = 0; i < n; i++)
+            item[i] = 2 * i + 1; /* a part of all points */
+        boxtree_build(&t, pos, item, n);
+        /* every item once, and boxes tight */
+        uint32_t *got = g_memdup2(t.item, sizeof *item * n);
+        if (n) {
+            qsort(got, n, sizeof *got, by_index);
+            g_assert_cmpmem(got, (int)(sizeof *got * n), item, (int)(sizeof *item * n));
+        }
+        g_free(got);
+        uint32_t leaves = 0;
+        for (uint32_t k = 0; k < t.n_nodes; k++) {
+            Box2 b = box_empty();
+            for (uint32_t i = t.node[k].first; i < t.node[k].first + t.node[k].count; i++)
+                b = box_add(b, pos[t.item[i]]);
+            g_assert_cmpmem(&b, sizeof b, &t.node[k].box, sizeof b);
+            if (t.node[k].right == 0)
+                leaves += t.node[k].count;
+            else
+                g_assert_cmpuint(t.node[k + 1].count + t.node[t.node[k].right].count, ==, t.node[k].count);
+        }
+        g_assert_cmpuint(leaves, ==, n);
+        for (uint32_t k = 0; k < 200; k++) {
+            double x = (roll(&d) - 0.5) * 60, y = (roll(&d) - 0.5) * 60, w = roll(&d) * 6, h = roll(&d) * 6;
+            Box2 b = {x, y, x + w, y + h};
+            if (k % 4 == 0)
+                b = (Box2){floor(x), floor(y), ceil(x), ceil(y)}; /* edges through points */
+            bool any = false;
+            for (uint32_t i = 0; i < n; i++) {
+                Vec2 p = pos[item[i]];
+                any |= p.x >= b.x0 && p.x <= b.x1 && p.y >= b.y0 && p.y <= b.y1;
+            }
+            g_assert_cmpint(boxtree_any_in(&t, pos, b), ==, any);
+        }
+        g_free(pos);
+        g_free(item);
+    }
+    boxtree_clear(&t);
+}
+
+/* ---- index of zones ---- */
+
+typedef struct {
+    uint32_t *hits;
+} Tally;
+
+static void tally(uint32_t item, void *user) { ((Tally *)user)->hits[item]++; }
+
+static void test_zones(void)
+{
+    static const Box2 field[] = {{-40, -40, 40, 40}, {-40, -3, 40, 5}, {0, 0, 1, 900}, {1000, 2000, 1080, 2079}};
+    static const double size[] = {0.01, 1, 7, 500};
+    for (uint32_t round = 0; round < 64; round++) {
+        Dice d = {7000 + round, 0};
+        Box2 box = field[round % 4];
+        double w = box.x1 - box.x0, h = box.y1 - box.y0;
+        Zones z;
+        zones_init(&z, box, size[round / 4 % 4]);
+        for (int again = 0; again < 2; again++) {
+            uint32_t n = pick(&d, 300), m = 1 + pick(&d, 40);
+            Vec2 *place = g_new(Vec2, n + 1), *point = g_new(Vec2, m);
+            Box2 *zone = g_new(Box2, n + 1);
+            uint32_t *item = g_new(uint32_t, m);
+            Tally t = {g_new0(uint32_t, n + 1)};
+            for (uint32_t i = 0; i < n; i++) {
+                place[i] = vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
+                double x = roll(&d) * w * (i % 9 ? 0.05 : 1), y = roll(&d) * h * (i % 9 ? 0.05 : 1);
+                zone[i] = (Box2){place[i].x - x, place[i].y - y, place[i].x + roll(&d) * x, place[i].y + roll(&d) * y};
+                zones_add(&z, place[i], zone[i]);
+            }
+            for (uint32_t i = 0; i < m; i++) {
+                bool corner = n && i % 3 == 0; /* exactly on a zone's edge */
+                point[i] = corner ? vec2(zone[i % n].x0, zone[i % n].y1) : vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
+                item[i] = i;
+            }
+            Boxtree b = {0};
+            boxtree_build(&b, point, item, m);
+            zones_raise(&z);
+            zones_visit(&z, &b, point, tally, &t);
+            double loose = 1e-6 * (fabs(box.x0) + fabs(box.x1) + fabs(box.y0) + fabs(box.y1));
+            for (uint32_t i = 0; i < n; i++) {
+                bool in = false, about = false;
+                for (uint32_t k = 0; k < m; k++) {
+                    in |= box_has(zone[i], point[k]);
+                    about |= box_has(box_grow(zone[i], loose), point[k]);
+                }
+                g_assert_cmpuint(t.hits[i], <=, 1);
+                if (in)
+                    g_assert_cmpuint(t.hits[i], ==, 1);
+                if (!about)
+                    g_assert_cmpuint(t.hits[i], ==, 0);
+            }
+            for (uint32_t k = 0; k < 200; k++) {
+                Vec2 p = vec2(box.x0 + (roll(&d) * 1.2 - 0.1) * w, box.y0 + (roll(&d) * 1.2 - 0.1) * h);
+                double r = roll(&d) * (k % 2 ? 3 : 30);
+                bool any = false;
+                for (uint32_t i = 0; i < n; i++)
+                    any |= plain_dist2(place[i], p) < r * r;
+                g_assert_cmpint(zones_any_within(&z, place, p, r), ==, any);
+            }
+            boxtree_clear(&b);
+            g_free(place);
+            g_free(point);
+            g_free(zone);
+            g_free(item);
+            g_free(t.hits);
+            zones_reset(&z);
+        }
+        zones_clear(&z);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/neighbours/by-hand", test_by_hand);
+    g_test_add_func("/neighbours/at-most-five", test_at_most_five);
+    for (uint32_t k = 0; k < SET_COUNT; k++) {
+        char *name = g_strdup_printf("/neighbours/sets/%s", set_name[k]);
+        g_strdelimit(name, " ", '-');
+        g_test_add_data_func(name, GUINT_TO_POINTER(k), test_sets);
+        g_free(name);
+    }
+    g_test_add_func("/neighbours/many", test_many);
+    g_test_add_func("/neighbours/zone", test_zone_holds);
+    g_test_add_func("/neighbours/quadtree", test_quadtree);
+    g_test_add_func("/neighbours/boxtree", test_boxtree);
+    g_test_add_func("/neighbours/zones", test_zones);
+    return g_test_run();
+}
