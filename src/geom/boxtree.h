@@ -26,6 +26,15 @@ void boxtree_build(Boxtree *t, const Vec2 *pos, const uint32_t *item, uint32_t n
 /* Whether a box holds any of the points. */
 bool boxtree_any_in(const Boxtree *t, const Vec2 *pos, Box2 box);
 
+/* Moves *best and *best2 to the point nearest to p when one is nearer than sqrt(*best2) that the filter (NULL: any) lets pass. Of equally near
+ * points the smallest wins, and what was in *best before wins over all. */
+void boxtree_nearest(const Boxtree *t, const Vec2 *pos, Vec2 p, bool (*filter)(const void *user, uint32_t i), const void *user,
+                     uint32_t *best, double *best2);
+
+/* Points, in ascending order, that may be the nearest one to some place in the box and are nearer to it than sqrt(bound2): of the others each
+ * has a rival that is nearer to all of the box. Returns how many; more than `cap` when they did not fit, and then `out` is of no use. */
+uint32_t boxtree_nearest_to(const Boxtree *t, const Vec2 *pos, Box2 box, double bound2, uint32_t *out, uint32_t cap);
+
 static inline bool box_meets(Box2 a, Box2 b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
 
 #endif

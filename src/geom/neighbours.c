@@ -403,54 +403,6 @@ bool hood_update(Hood *h, const Field *f, const Boxtree *fresh)
     return true;
 }
 
-/* ---- nearest ---- */
-
-static void nearest_set(Hood *h, uint32_t v, Vec2 p, double d2)
-{
-    h->n = 1;
-    h->m[0] = (Neighbour){p, d2, v};
-    h->zone = box_grow((Box2){h->s.x, h->s.y, h->s.x, h->s.y}, sqrt(d2) * (1.0 + 1e-12));
-}
-
-void nearest_find(Hood *h, const Field *f, Vec2 s)
-{
-    *h = (Hood){.s = s, .zone = f->field};
-    double d2 = HUGE_VAL;
-    uint32_t v = quadtree_nearest(f->tree, s, HUGE_VAL, f->sees, f->user, &d2);
-    if (v != NO_POINT)
-        nearest_set(h, v, f->pos[v], d2);
-}
-
-bool nearest_update(Hood *h, const Field *f, const Boxtree *fresh)
-{
-    uint32_t stack[BOXTREE_DEPTH], depth = 0, best = NO_POINT;
-    double best2 = h->n ? h->m[0].d2 : HUGE_VAL; /* an older node wins a tie */
-    stack[depth++] = 0;
-    while (depth) {
-        uint32_t k = stack[--depth];
-        const BoxNode *n = &fresh->node[k];
-        if (box_dist2(n->box, h->s) > best2)
-            continue;
-        if (n->right) {
-            stack[depth++] = n->right;
-            stack[depth++] = k + 1;
-            continue;
-        }
-        for (uint32_t i = n->first; i < n->first + n->count; i++) {
-            uint32_t v = fresh->item[i];
-            double d2 = vec_dist2(h->s, f->pos[v]);
-            if ((d2 < best2 || (d2 == best2 && best != NO_POINT && v < best)) && (!f->sees || f->sees(f->user, v))) {
-                best = v;
-                best2 = d2;
-            }
-        }
-    }
-    if (best == NO_POINT)
-        return false;
-    nearest_set(h, best, f->pos[best], best2);
-    return true;
-}
-
 /* ---- Urquhart ---- */
 
 void cell_clear(Cell *c)

@@ -40,10 +40,6 @@ typedef struct {
     const void *user; /* for sees */
 } Field;
 
-/* The nearest node alone, which is what a source of an open pattern influences. From scratch, and taking in new nodes. O(log n) expected. */
-void nearest_find(Hood *h, const Field *field, Vec2 s);
-bool nearest_update(Hood *h, const Field *field, const Boxtree *fresh);
-
 /* Relative neighbourhood of s from scratch. Exact. O(log n) expected. */
 void hood_find(Hood *h, const Field *field, Vec2 s);
 

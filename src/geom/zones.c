@@ -23,7 +23,7 @@ void zones_init(Zones *z, Box2 field, double cell)
 {
     *z = (Zones){.field = field};
     double w = field.x1 - field.x0, h = field.y1 - field.y0, most = w > h ? w : h;
-    z->cell = cell > most / 128.0 ? cell : most / 128.0;
+    z->cell = cell > most / 256.0 ? cell : most / 256.0;
     z->nx[0] = (uint32_t)(w / z->cell) + 1;
     z->ny[0] = (uint32_t)(h / z->cell) + 1;
     z->levels = 1;
@@ -50,8 +50,11 @@ void zones_clear(Zones *z)
 
 void zones_reset(Zones *z)
 {
-    for (gsize i = 0; i < (gsize)z->nx[0] * z->ny[0]; i++)
+    for (gsize i = 0; i < zones_cells(z); i++)
         z->head[i] = UINT32_MAX;
+    for (uint32_t l = 0; l < z->levels; l++)
+        for (gsize i = 0; i < (gsize)z->nx[l] * z->ny[l]; i++)
+            z->box[l][i] = nothing;
     z->n = 0;
 }
 
@@ -61,6 +64,20 @@ static uint32_t column(double v, double from, double cell, uint32_t n)
     return u <= 0.0 ? 0 : u >= (double)n - 1.0 ? n - 1 : (uint32_t)u;
 }
 
+uint32_t zones_cell(const Zones *z, Vec2 p)
+{
+    return column(p.y, z->field.y0, z->cell, z->ny[0]) * z->nx[0] + column(p.x, z->field.x0, z->cell, z->nx[0]);
+}
+
+Box2 zones_cell_box(const Zones *z, uint32_t cell)
+{
+    double x = z->field.x0 + z->cell * (cell % z->nx[0]), y = z->field.y0 + z->cell * (cell / z->nx[0]);
+    double slack = 1e-6 * z->cell; /* a place may have been rounded into its cell */
+    return (Box2){x - slack, y - slack, x + z->cell + slack, y + z->cell + slack};
+}
+
+void zones_set(Zones *z, uint32_t item, Box2 zone) { z->zone[item] = widen(zone); }
+
 void zones_add(Zones *z, Vec2 p, Box2 zone)
 {
     if (z->n == z->cap) {
@@ -68,10 +85,14 @@ void zones_add(Zones *z, Vec2 p, Box2 zone)
         z->next = g_renew(uint32_t, z->next, z->cap);
         z->zone = g_renew(ZoneBox, z->zone, z->cap);
     }
-    uint32_t *head = &z->head[(gsize)column(p.y, z->field.y0, z->cell, z->ny[0]) * z->nx[0] + column(p.x, z->field.x0, z->cell, z->nx[0])];
-    z->next[z->n] = *head;
+    uint32_t cell = zones_cell(z, p), x = cell % z->nx[0], y = cell / z->nx[0];
+    z->next[z->n] = z->head[cell];
     z->zone[z->n] = widen(zone);
-    *head = z->n++;
+    for (uint32_t l = 0; l < z->levels; l++, x /= 2, y /= 2) {
+        ZoneBox *b = &z->box[l][(gsize)y * z->nx[l] + x];
+        *b = join(*b, z->zone[z->n]);
+    }
+    z->head[cell] = z->n++;
 }
 
 void zones_raise(Zones *z)
@@ -95,21 +116,19 @@ typedef struct {
     uint32_t level, x, y;
 } Square;
 
-void zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, void (*hit)(uint32_t item, void *user), void *user)
+uint32_t zones_visit_cells(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out)
 {
     Square stack[64];
-    unsigned depth = 0;
+    uint32_t depth = 0, n = 0;
     stack[depth++] = (Square){z->levels - 1, 0, 0};
     while (depth) {
         Square q = stack[--depth];
-        gsize c = (gsize)q.y * z->nx[q.level] + q.x;
+        uint32_t c = q.y * z->nx[q.level] + q.x;
         Box2 box = as_box(z->box[q.level][c]);
         if (box_is_empty(box) || !boxtree_any_in(points, pos, box))
             continue;
         if (q.level == 0) {
-            for (uint32_t i = z->head[c]; i != UINT32_MAX; i = z->next[i])
-                if (boxtree_any_in(points, pos, as_box(z->zone[i])))
-                    hit(i, user);
+            out[n++] = c;
             continue;
         }
         uint32_t l = q.level - 1;
@@ -117,6 +136,18 @@ void zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, void (*
             for (uint32_t x = 2 * q.x; x <= 2 * q.x + 1 && x < z->nx[l]; x++)
                 stack[depth++] = (Square){l, x, y};
     }
+    return n;
+}
+
+uint32_t zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out)
+{
+    uint32_t *cell = g_new(uint32_t, zones_cells(z)), n_cells = zones_visit_cells(z, points, pos, cell), n = 0;
+    for (uint32_t k = 0; k < n_cells; k++)
+        for (uint32_t i = z->head[cell[k]]; i != UINT32_MAX; i = z->next[i])
+            if (boxtree_any_in(points, pos, as_box(z->zone[i])))
+                out[n++] = i;
+    g_free(cell);
+    return n;
 }
 
 bool zones_any_within(const Zones *z, const Vec2 *place, Vec2 p, double r)

@@ -28,14 +28,27 @@ void zones_clear(Zones *z);
 /* Empties the index, keeping its memory. O(cells). */
 void zones_reset(Zones *z);
 
-/* Adds item number z->n (items are numbered as they are added) at place p. The boxes above it are stale until zones_raise. */
+/* Number of the cell that p lies in, from 0 to zones_cells - 1. */
+uint32_t zones_cell(const Zones *z, Vec2 p);
+static inline uint32_t zones_cells(const Zones *z) { return z->nx[0] * z->ny[0]; }
+
+/* The cell's square; those at the border stand for all that lies beyond. */
+Box2 zones_cell_box(const Zones *z, uint32_t cell);
+
+/* Adds item number z->n (items are numbered as they are added) at place p. */
 void zones_add(Zones *z, Vec2 p, Box2 zone);
+
+/* Gives an item a smaller zone. The boxes above it stay what they are, larger than need be, until zones_raise. */
+void zones_set(Zones *z, uint32_t item, Box2 zone);
 
 /* Recomputes all boxes from the items' zones. O(items + cells). */
 void zones_raise(Zones *z);
 
-/* Calls hit(item, user) for every item whose zone may hold one of the points, in a fixed order. */
-void zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, void (*hit)(uint32_t item, void *user), void *user);
+/* Appends to `out` the items whose zone may hold one of the points, in a fixed order; returns how many. */
+uint32_t zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out);
+
+/* The same for whole cells: those with an item whose zone may hold one. */
+uint32_t zones_visit_cells(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out);
 
 /* Whether an item lies nearer to p than r; place[i] is where item i lies. */
 bool zones_any_within(const Zones *z, const Vec2 *place, Vec2 p, double r);

@@ -55,17 +55,19 @@ static uint8_t pulling(const Simulation *s, const Source *src)
 static uint32_t gather_pulls(Simulation *s)
 {
     uint32_t live = 0;
+    bool open = s->def.pattern == PATTERN_OPEN;
     s->n_pull = s->n_pulled = 0;
     for (uint32_t k = 0; k < s->n_sources; k++) {
-        const Source *src = &s->source[k];
-        uint8_t mask = pulling(s, src);
+        if (s->idle[k])
+            continue;
+        uint8_t mask = open ? s->near[k] != NO_POINT : pulling(s, &s->source[k]);
         live += mask != 0;
         for (uint8_t i = 0; mask; i++, mask >>= 1) {
             if (!(mask & 1))
                 continue;
-            double d = sqrt(src->hood.m[i].d2);
-            if (d > 0.0)
-                pull_add(s, k, i, src->hood.m[i].v, vec_scale(vec_sub(src->hood.s, src->hood.m[i].p), 1.0 / d));
+            Neighbour m = source_member(s, k, i);
+            if (m.d2 > 0.0)
+                pull_add(s, k, i, m.v, vec_scale(vec_sub(s->place[k], m.p), 1.0 / sqrt(m.d2)));
         }
     }
     return live;
@@ -105,20 +107,23 @@ static void grow_single(Simulation *s, const Pulled *p)
         uint32_t best = NO_POINT;
         double best2 = HUGE_VAL;
         for (uint32_t k = p->first; k != NO_POINT; k = s->pull[k].next) {
-            const Source *src = &s->source[s->pull[k].source];
-            uint8_t i = s->pull[k].member;
-            if (!(src->spent >> i & 1) && src->hood.m[i].d2 < best2) {
-                best2 = src->hood.m[i].d2;
+            uint32_t slot = s->pull[k].source;
+            double d2 = source_member(s, slot, s->pull[k].member).d2;
+            if (!s->idle[slot] && !(s->source[slot].spent >> s->pull[k].member & 1) && d2 < best2) {
+                best2 = d2;
                 best = k;
             }
         }
         if (best == NO_POINT)
             return;
-        Source *src = &s->source[s->pull[best].source];
+        uint32_t slot = s->pull[best].source;
         uint8_t i = s->pull[best].member;
-        if (grow(s, p->node, vec_sub(src->hood.s, src->hood.m[i].p)))
+        if (grow(s, p->node, vec_sub(s->place[slot], s->veins.pos[p->node])))
             return;
-        src->spent |= (uint8_t)(1u << i);
+        if (s->def.pattern == PATTERN_OPEN)
+            s->idle[slot] = 1;
+        else
+            s->source[slot].spent |= (uint8_t)(1u << i);
     }
 }
 
@@ -168,42 +173,115 @@ static void carry_masks(const Simulation *s, Source *src, const Members *old)
         }
 }
 
-static void source_update(Simulation *s, Source *src)
+static void source_update(Simulation *s, uint32_t k)
 {
+    Source *src = &s->source[k];
     Eye eye;
     Field f = source_field(s, src, &eye);
     Members old = members_of(src);
-    bool changed = s->def.pattern == PATTERN_OPEN ? nearest_update(&src->hood, &f, &s->fresh_tree)
-                   : s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE
-                       ? hood_update(&src->hood, &f, &s->fresh_tree)
-                       : urquhart_update(&src->hood, &src->cell, &f, &s->fresh_tree);
-    if (changed)
-        carry_masks(s, src, &old);
+    bool changed = s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE ? hood_update(&src->hood, &f, &s->fresh_tree)
+                                                                  : urquhart_update(&src->hood, &src->cell, &f, &s->fresh_tree);
+    if (!changed)
+        return;
+    carry_masks(s, src, &old);
+    zones_set(&s->zones, k, src->hood.zone);
 }
 
-static void update_range(uint32_t first, uint32_t last, void *user)
+static void update_sources(uint32_t first, uint32_t last, void *user)
 {
     Simulation *s = user;
     for (uint32_t k = first; k < last; k++)
-        source_update(s, &s->source[s->touched[k]]);
+        source_update(s, s->touched[k]);
 }
 
-static void touch(uint32_t source, void *user)
+/* New nodes that a cell of sources looks at, beside each other in memory. */
+enum { FEW = 256 };
+typedef struct {
+    uint32_t n;
+    uint32_t v[FEW]; /* ascending */
+    double x[FEW], y[FEW];
+} Few;
+
+/* Moves slot k to the nearest of a few new nodes if that is nearer than its old one (which wins a tie, as the older). */
+static void few_nearest(Simulation *s, uint32_t k, const Few *few)
+{
+    Vec2 p = s->place[k];
+    double best2 = HUGE_VAL;
+    for (uint32_t j = 0; j < few->n; j++) { /* without branches: nearly all lie farther off */
+        double dx = few->x[j] - p.x, dy = few->y[j] - p.y, d2 = dx * dx + dy * dy;
+        best2 = d2 < best2 ? d2 : best2;
+    }
+    if (best2 >= s->near2[k])
+        return;
+    for (uint32_t j = 0; j < few->n; j++) {
+        double d2 = vec_dist2(vec2(few->x[j], few->y[j]), p);
+        if (d2 == best2) {
+            s->near2[k] = d2;
+            s->near[k] = few->v[j];
+            return;
+        }
+    }
+}
+
+/* Open patterns: shows the sources of one cell the new nodes that may be nearest to one of them. Returns how many sources looked. */
+static uint32_t cell_update(Simulation *s, uint32_t cell)
+{
+    double most2 = -1.0;
+    uint32_t seen = 0;
+    for (uint32_t k = s->zones.head[cell]; k != NO_POINT; k = s->zones.next[k])
+        most2 = MAX(most2, s->near2[k]);
+    Few few;
+    few.n = s->reach ? FEW + 1 : boxtree_nearest_to(&s->fresh_tree, s->veins.pos, zones_cell_box(&s->zones, cell), most2, few.v, FEW);
+    for (uint32_t j = 0; few.n <= FEW && j < few.n; j++) {
+        few.x[j] = s->veins.pos[few.v[j]].x;
+        few.y[j] = s->veins.pos[few.v[j]].y;
+    }
+    for (uint32_t k = s->zones.head[cell]; k != NO_POINT; k = s->zones.next[k]) {
+        double before = s->near2[k];
+        if (before < 0.0)
+            continue;
+        seen++;
+        if (few.n <= FEW) {
+            few_nearest(s, k, &few);
+        } else { /* too many, or which of them a source may see is its own affair */
+            Eye eye;
+            Field f = source_field(s, &s->source[k], &eye);
+            boxtree_nearest(&s->fresh_tree, s->veins.pos, s->place[k], f.sees, f.user, &s->near[k], &s->near2[k]);
+        }
+        if (s->near2[k] < before) {
+            s->idle[k] = 0;
+            zones_set(&s->zones, k, disc_box(s->place[k], s->near2[k]));
+        }
+    }
+    return seen;
+}
+
+static void update_cells(uint32_t first, uint32_t last, void *user)
 {
     Simulation *s = user;
-    s->touched[s->n_touched++] = source;
+    uint32_t seen = 0;
+    for (uint32_t k = first; k < last; k++)
+        seen += cell_update(s, s->touched[k]);
+    g_atomic_int_add(&s->seen, (gint)seen); /* a sum: the order of the threads doesn't matter */
 }
 
 /* Shows this step's nodes to the sources that they may concern. Each source is on its own, so threads can't change the outcome. */
 static void update_neighbourhoods(Simulation *s)
 {
     enum { GRAIN = 512 };
-    zones_raise(&s->zones);
+    bool open = s->def.pattern == PATTERN_OPEN;
+    if (s->blade->step % (1 + s->n_sources / 8192) == 0)
+        zones_raise(&s->zones);
     boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
-    s->n_touched = 0;
-    zones_visit(&s->zones, &s->fresh_tree, s->veins.pos, touch, s);
-    s->counts.updates += s->n_touched;
-    parallel_for(s->n_touched > 2 * GRAIN ? s->def.threads : 1, s->n_touched, GRAIN, update_range, s);
+    uint32_t room = MAX(s->n_sources, zones_cells(&s->zones));
+    if (room > s->cap_touched) {
+        s->cap_touched = room * 2;
+        s->touched = g_renew(uint32_t, s->touched, s->cap_touched);
+    }
+    s->n_touched = (open ? zones_visit_cells : zones_visit)(&s->zones, &s->fresh_tree, s->veins.pos, s->touched);
+    s->seen = open ? 0 : (gint)s->n_touched;
+    parallel_for(s->n_touched > 2 * GRAIN ? s->def.threads : 1, s->n_touched, GRAIN, open ? update_cells : update_sources, s);
+    s->counts.updates += (uint64_t)s->seen;
 }
 
 uint32_t veins_develop(Simulation *s)
@@ -271,31 +349,26 @@ static bool all_arrived(Simulation *s, Source *src)
     return !waiting;
 }
 
-static bool finished(Simulation *s, Source *src)
+static bool finished(Simulation *s, uint32_t k)
 {
     if (s->def.pattern == PATTERN_OPEN) {
         double kill = s->def.kill_distance * s->blade->unit;
-        return src->hood.n && src->hood.m[0].d2 < kill * kill;
+        return s->near2[k] < kill * kill;
     }
-    if (!all_arrived(s, src))
+    if (!all_arrived(s, &s->source[k]))
         return false;
-    join_arrived(s, src);
+    join_arrived(s, &s->source[k]);
     return true;
 }
 
 void sources_remove(Simulation *s)
 {
-    uint32_t k = 0;
-    while (k < s->n_sources) {
-        if (!finished(s, &s->source[k])) {
-            k++;
+    for (uint32_t k = 0; k < s->n_sources; k++) {
+        if (!source_is_alive(s, k) || !finished(s, k))
             continue;
-        }
         s->counts.reached++;
-        cell_clear(&s->source[k].cell);
-        s->n_sources--;
-        s->source[k] = s->source[s->n_sources];
-        s->place[k] = s->place[s->n_sources];
+        source_remove(s, k);
     }
-    sources_index(s);
+    if (s->n_removed + s->n_unsorted > 64 + s->n_sources / 4)
+        sources_sort(s);
 }

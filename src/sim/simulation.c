@@ -30,6 +30,22 @@ const char *end_reason_text(EndReason r)
 
 /* ---- one step ---- */
 
+/* Moves a source with the blade. Tags stay with the nodes that keep in its neighbourhood. */
+static void carry_source(Simulation *s, uint32_t k)
+{
+    Source *src = &s->source[k];
+    Hood old = src->hood;
+    uint8_t tagged = src->tagged;
+    s->place[k] = src->hood.s = blade_place(s->blade, src->material);
+    source_look(s, k);
+    s->idle[k] = 0;
+    src->tagged = src->spent = 0;
+    for (uint32_t i = 0; i < src->hood.n; i++)
+        for (uint32_t j = 0; j < old.n; j++)
+            if (src->hood.m[i].v == old.m[j].v)
+                src->tagged |= (uint8_t)((tagged >> j & 1) << i);
+}
+
 /* Nonuniform growth carries nodes and sources along; distances change their ratios, so neighbourhoods are found anew. */
 static void carry_along(Simulation *s)
 {
@@ -39,19 +55,10 @@ static void carry_along(Simulation *s)
     quadtree_reset(&v->tree, box_grow(s->blade->widest, 4.0));
     for (uint32_t i = 0; i < v->n; i++)
         quadtree_add(&v->tree, v->pos[i], i);
-    for (uint32_t k = 0; k < s->n_sources; k++) {
-        Source *src = &s->source[k];
-        Hood old = src->hood;
-        uint8_t tagged = src->tagged;
-        s->place[k] = src->hood.s = blade_place(s->blade, src->material);
-        source_look(s, src);
-        src->tagged = src->spent = 0;
-        for (uint32_t i = 0; i < src->hood.n; i++)
-            for (uint32_t j = 0; j < old.n; j++)
-                if (src->hood.m[i].v == old.m[j].v)
-                    src->tagged |= (uint8_t)((tagged >> j & 1) << i);
-    }
-    sources_index(s);
+    for (uint32_t k = 0; k < s->n_sources; k++)
+        if (source_is_alive(s, k))
+            carry_source(s, k);
+    sources_sort(s);
 }
 
 static void grow_blade(Simulation *s)
@@ -69,7 +76,7 @@ static EndReason judge(const Simulation *s, uint32_t live)
         return END_MAX_STEPS;
     if (s->blade->step < s->blade->last_step || sources_waiting(s))
         return END_RUNNING;
-    if (s->n_sources == 0)
+    if (sources_alive(s) == 0)
         return END_NO_SOURCES;
     return live == 0 && s->n_fresh == 0 ? END_UNREACHED : END_RUNNING;
 }
@@ -80,7 +87,7 @@ bool simulation_step(Simulation *s)
         return false;
     grow_blade(s);
     sources_place(s);
-    s->counts.most_sources = MAX(s->counts.most_sources, s->n_sources);
+    s->counts.most_sources = MAX(s->counts.most_sources, sources_alive(s));
     uint32_t live = veins_develop(s);
     sources_remove(s);
     s->counts.end = judge(s, live);
@@ -105,6 +112,17 @@ static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
         return FALSE;
     }
     return TRUE;
+}
+
+/* About how far apart sources will lie, for the cell size of their index. */
+static double source_spacing(const SimulationDef *d, const Blade *b)
+{
+    double length = blade_length_at(b, b->last_step), apart = 1.0;
+    if (d->placement == PLACEMENT_MARGIN)
+        apart = sqrt(1.0 / MAX(d->density, 1e-12));
+    if (d->placement == PLACEMENT_LIST)
+        return sqrt(d->leaf->area / MAX(d->n_list, 1)) * length;
+    return MAX(d->birth_distance_sources, apart);
 }
 
 static gboolean plant_seeds(Simulation *s, GError **error)
@@ -150,8 +168,8 @@ Simulation *simulation_new(const SimulationDef *def, GError **error)
     veins_init(&s->veins, field);
     if (blade->moving)
         s->veins.material = g_new(Vec2, 1); /* grows with the nodes */
-    double least = MAX(def->birth_distance_sources, def->placement == PLACEMENT_DARTS ? 1.0 : sqrt(1.0 / MAX(def->density, 1e-12)));
-    zones_init(&s->zones, field, 2.0 * least);
+    double least = source_spacing(def, blade);
+    zones_init(&s->zones, field, (def->pattern == PATTERN_OPEN ? 8.0 : 2.0) * least);
     if (!sources_prepare(s, error) || !plant_seeds(s, error)) {
         simulation_free(s);
         return NULL;
@@ -171,6 +189,9 @@ void simulation_free(Simulation *s)
     blade_free(s->blade);
     g_free(s->source);
     g_free(s->place);
+    g_free(s->idle);
+    g_free(s->near);
+    g_free(s->near2);
     g_free(s->waiting);
     g_free(s->pull);
     g_free(s->pulled);
@@ -188,8 +209,8 @@ SimulationCounts simulation_counts(const Simulation *s)
     c.step = s->blade->step;
     c.nodes = s->veins.n;
     c.joins = s->veins.n_joins;
-    c.sources = s->n_sources;
-    c.given_up = c.end == END_RUNNING ? 0 : s->n_sources;
+    c.sources = sources_alive(s);
+    c.given_up = c.end == END_RUNNING ? 0 : c.sources;
     return c;
 }
 

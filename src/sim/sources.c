@@ -34,37 +34,69 @@ Field source_field(const Simulation *s, const Source *src, Eye *eye)
     return (Field){s->veins.pos, &s->veins.tree, {c.x - h, c.y - h, c.x + h, c.y + h}, s->reach ? sees : NULL, eye};
 }
 
-void source_look(Simulation *s, Source *src)
+void source_look(Simulation *s, uint32_t k)
 {
+    Source *src = &s->source[k];
     Eye eye;
     Field f = source_field(s, src, &eye);
-    if (s->def.pattern == PATTERN_OPEN)
-        nearest_find(&src->hood, &f, src->hood.s);
-    else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE)
+    if (s->def.pattern == PATTERN_OPEN) {
+        s->near2[k] = HUGE_VAL;
+        s->near[k] = quadtree_nearest(f.tree, src->hood.s, HUGE_VAL, f.sees, f.user, &s->near2[k]);
+    } else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE) {
         hood_find(&src->hood, &f, src->hood.s);
-    else
+    } else {
         urquhart_find(&src->hood, &src->cell, &f, src->hood.s);
+    }
     s->counts.updates++;
+}
+
+/* Outside this box no new node can concern slot k. */
+static Box2 zone_of(const Simulation *s, uint32_t k)
+{
+    if (s->def.pattern == PATTERN_CLOSED)
+        return s->source[k].hood.zone;
+    Vec2 p = s->place[k], c = s->veins.tree.centre;
+    double h = s->veins.tree.half;
+    if (s->near[k] == NO_POINT)
+        return (Box2){c.x - h, c.y - h, c.x + h, c.y + h};
+    return disc_box(p, s->near2[k]);
+}
+
+static void reserve(Simulation *s)
+{
+    if (s->n_sources < s->cap_sources)
+        return;
+    s->cap_sources = MAX(s->cap_sources * 2, 256);
+    s->source = g_renew(Source, s->source, s->cap_sources);
+    s->place = g_renew(Vec2, s->place, s->cap_sources);
+    s->idle = g_renew(uint8_t, s->idle, s->cap_sources);
+    s->near = g_renew(uint32_t, s->near, s->cap_sources);
+    s->near2 = g_renew(double, s->near2, s->cap_sources);
 }
 
 static void source_add(Simulation *s, Vec2 p)
 {
-    if (s->n_sources == s->cap_sources) {
-        s->cap_sources = MAX(s->cap_sources * 2, 256);
-        s->source = g_renew(Source, s->source, s->cap_sources);
-        s->place = g_renew(Vec2, s->place, s->cap_sources);
-        s->touched = g_renew(uint32_t, s->touched, s->cap_sources);
-    }
-    uint32_t i = s->n_sources++;
-    Source *src = &s->source[i];
-    *src = (Source){.birth = s->blade->step};
-    src->hood.s = p;
-    src->material = s->blade->moving ? blade_material(s->blade, p) : p;
-    s->place[i] = p;
-    source_look(s, src);
-    zones_add(&s->zones, p, src->hood.zone);
+    reserve(s);
+    uint32_t k = s->n_sources++;
+    s->source[k] = (Source){.birth = s->blade->step};
+    s->source[k].hood.s = p;
+    s->source[k].material = s->blade->moving ? blade_material(s->blade, p) : p;
+    s->place[k] = p;
+    s->idle[k] = 0;
+    source_look(s, k);
+    zones_add(&s->zones, p, zone_of(s, k));
+    s->n_unsorted++;
     s->counts.placed++;
-    s->placed_now++;
+}
+
+void source_remove(Simulation *s, uint32_t k)
+{
+    cell_clear(&s->source[k].cell);
+    s->place[k] = vec2((double)NAN, (double)NAN);
+    s->idle[k] = 1;
+    s->near2[k] = -1.0;
+    zones_set(&s->zones, k, box_empty());
+    s->n_removed++;
 }
 
 static bool vacant(const Simulation *s, Vec2 p)
@@ -127,18 +159,51 @@ bool sources_waiting(const Simulation *s) { return s->next_waiting < s->n_waitin
 
 void sources_place(Simulation *s)
 {
-    s->placed_now = 0;
     if (s->def.placement == PLACEMENT_DARTS)
         throw_darts(s);
     else
         place_waiting(s);
 }
 
-void sources_index(Simulation *s)
+/* New order of the slots: living ones by cell, in a cell as they were. Returns how many there are. */
+static uint32_t *sorted_slots(const Simulation *s, uint32_t n)
 {
+    uint32_t cells = zones_cells(&s->zones);
+    uint32_t *start = g_new0(uint32_t, cells + 1), *slot = g_new(uint32_t, MAX(n, 1));
+    for (uint32_t k = 0; k < s->n_sources; k++)
+        if (source_is_alive(s, k))
+            start[zones_cell(&s->zones, s->place[k]) + 1]++;
+    for (uint32_t c = 0; c < cells; c++)
+        start[c + 1] += start[c];
+    for (uint32_t k = 0; k < s->n_sources; k++)
+        if (source_is_alive(s, k))
+            slot[start[zones_cell(&s->zones, s->place[k])]++] = k;
+    g_free(start);
+    return slot;
+}
+
+#define PERMUTE(array, slot, n)                                            \
+    do {                                                                   \
+        gpointer copy = g_memdup2(array, sizeof *(array) * s->n_sources);  \
+        for (uint32_t k_ = 0; k_ < (n); k_++)                              \
+            memcpy(&(array)[k_], (char *)copy + sizeof *(array) * (slot)[k_], sizeof *(array)); \
+        g_free(copy);                                                      \
+    } while (0)
+
+void sources_sort(Simulation *s)
+{
+    uint32_t n = sources_alive(s), *slot = sorted_slots(s, n);
+    PERMUTE(s->source, slot, n);
+    PERMUTE(s->place, slot, n);
+    PERMUTE(s->idle, slot, n);
+    PERMUTE(s->near, slot, n);
+    PERMUTE(s->near2, slot, n);
+    g_free(slot);
+    s->n_sources = n;
+    s->n_removed = s->n_unsorted = 0;
     zones_reset(&s->zones);
-    for (uint32_t i = 0; i < s->n_sources; i++)
-        zones_add(&s->zones, s->place[i], s->source[i].hood.zone);
+    for (uint32_t k = 0; k < n; k++)
+        zones_add(&s->zones, s->place[k], zone_of(s, k));
 }
 
 /* ---- sources known beforehand ---- */
@@ -202,20 +267,28 @@ static gboolean prepare_margin(Simulation *s, GError **error)
     return TRUE;
 }
 
+/* Whether a listed source lies in the blade in the end; one right on the margin may be off it by rounding, or by the flatness of a curve,
+ * and a vein may reach a segment beyond. */
+static bool in_reach(const Simulation *s, Vec2 p)
+{
+    if (s->blade->moving)
+        return box_has(s->blade->widest, p);
+    double scale = blade_length_at(s->blade, s->blade->last_step);
+    Vec2 leaf = vec_scale(p, 1.0 / scale);
+    return polygon_contains(s->def.leaf, leaf) || polygon_depth(s->def.leaf, leaf) * scale >= -1.0;
+}
+
 static gboolean prepare_list(Simulation *s, GError **error)
 {
     s->n_waiting = s->def.n_list;
     s->waiting = g_memdup2(s->def.list, sizeof(ListedSource) * s->def.n_list);
     for (uint32_t i = 0; i < s->n_waiting; i++) {
-        Box2 b = s->blade->widest;
-        bool inside = s->blade->moving ? box_has(b, s->waiting[i].pos)
-                                       : polygon_contains(s->def.leaf, vec_scale(s->waiting[i].pos, 1.0 / blade_length_at(s->blade, MAX(s->waiting[i].step, s->blade->last_step))));
-        if (!inside) {
-            g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
-                        "sources.file: source %u at %g,%g lies outside the blade, which is %g segments long in the end", i + 1,
-                        s->waiting[i].pos.x, s->waiting[i].pos.y, blade_length_at(s->blade, s->blade->last_step));
-            return FALSE;
-        }
+        if (in_reach(s, s->waiting[i].pos))
+            continue;
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
+                    "sources.file: source %u at %g,%g lies outside the blade, which is %g segments long in the end", i + 1,
+                    s->waiting[i].pos.x, s->waiting[i].pos.y, blade_length_at(s->blade, s->blade->last_step));
+        return FALSE;
     }
     return TRUE;
 }

@@ -54,15 +54,19 @@ struct Simulation {
     Blade *blade;
     Reach *reach; /* NULL: no sinus can come between a source and a vein */
     Veins veins;
-    Source *source; /* [n_sources] */
-    Vec2 *place;    /* [n_sources] their places, for the index */
-    uint32_t n_sources, cap_sources;
-    Zones zones;    /* of the sources */
+    /* Sources, sorted by place from time to time so that neighbours in the blade are neighbours in memory. One that was removed keeps
+     * its slot, idle and nowhere (NaN), until the next sorting. */
+    Source *source;   /* [n_sources] */
+    Vec2 *place;      /* [n_sources] */
+    uint8_t *idle;    /* [n_sources] pulls nothing: removed, or (open) its node can't get nearer */
+    uint32_t *near;   /* [n_sources] open: nearest node, instead of a hood */
+    double *near2;    /* [n_sources] open: its squared distance; -1 for a removed source */
+    uint32_t n_sources, cap_sources, n_removed, n_unsorted;
+    Zones zones;      /* of the sources; item = slot */
     double dart_carry;
     /* sources that wait to appear (margin, list), in the order in which they may */
     ListedSource *waiting;
     uint32_t n_waiting, next_waiting;
-    uint32_t placed_now; /* in this step */
     /* work space of one step */
     Pull *pull;
     Pulled *pulled;
@@ -70,7 +74,9 @@ struct Simulation {
     uint32_t *fresh; /* nodes born in this step */
     uint32_t n_fresh, cap_fresh;
     Boxtree fresh_tree;
-    uint32_t *touched, n_touched; /* [cap_sources] sources that the fresh nodes may concern */
+    uint32_t *touched, n_touched; /* slots (open: cells) that the fresh nodes may concern */
+    uint32_t cap_touched;
+    gint seen; /* sources that looked at this step's nodes; atomic */
     SimulationCounts counts;
 };
 
@@ -83,13 +89,36 @@ void veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step);
 /* sources.c */
 gboolean sources_prepare(Simulation *s, GError **error);
 void sources_place(Simulation *s);           /* the step's new sources */
-void source_look(Simulation *s, Source *src); /* finds its neighbourhood from scratch */
-void sources_index(Simulation *s);           /* rebuilds s->zones */
+void source_look(Simulation *s, uint32_t k); /* finds the neighbourhood of slot k from scratch */
+void source_remove(Simulation *s, uint32_t k);
+void sources_sort(Simulation *s);            /* drops removed slots, sorts by place, rebuilds s->zones */
 bool sources_waiting(const Simulation *s);
 
 /* develop.c */
 uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there are */
 void sources_remove(Simulation *s);    /* tags, arrivals, anastomoses, removal */
+
+static inline bool source_is_alive(const Simulation *s, uint32_t k) { return s->place[k].x == s->place[k].x; }
+static inline uint32_t sources_alive(const Simulation *s) { return s->n_sources - s->n_removed; }
+
+/* Box of the disc around p with squared radius r2. */
+static inline Box2 disc_box(Vec2 p, double r2)
+{
+    return box_grow((Box2){p.x, p.y, p.x, p.y}, sqrt(r2) * (1.0 + 1e-12));
+}
+
+/* Number of nodes that slot k pulls or might pull, and node i of them. */
+static inline uint32_t source_members(const Simulation *s, uint32_t k)
+{
+    return s->def.pattern == PATTERN_OPEN ? s->near[k] != NO_POINT : s->source[k].hood.n;
+}
+
+static inline Neighbour source_member(const Simulation *s, uint32_t k, uint32_t i)
+{
+    if (s->def.pattern == PATTERN_OPEN)
+        return (Neighbour){s->veins.pos[s->near[k]], s->near2[k], s->near[k]};
+    return s->source[k].hood.m[i];
+}
 
 /* The points as source `src` sees them. */
 typedef struct {

@@ -6,6 +6,7 @@
 #include "geom/neighbours.h"
 #include "geom/random.h"
 #include "geom/zones.h"
+#include "plain_hood.h"
 
 /* ---- point sets ---- */
 
@@ -134,98 +135,6 @@ static bool seen(const void *user, uint32_t i)
     return s->rule == 0 || (s->rule == 1 && i % 3 != 1) || (s->rule == 2 && s->pos[i].x + 0.3 * s->pos[i].y > 1.0);
 }
 
-/* ---- plain twins ---- */
-
-static double plain_dist2(Vec2 a, Vec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
-
-/* Nearer to s than v: of two equally near ones the smaller index. */
-static bool plain_nearer(const Vec2 *pos, Vec2 s, uint32_t u, uint32_t v)
-{
-    double du = plain_dist2(pos[u], s), dv = plain_dist2(pos[v], s);
-    return du < dv || (du == dv && u < v);
-}
-
-/* Eq. 2 with that rule: u shuts v out when it is nearer to s and v is not nearer to s than to u. */
-static bool plain_shuts(const Vec2 *pos, Vec2 s, uint32_t u, uint32_t v)
-{
-    return u != v && plain_nearer(pos, s, u, v) && plain_dist2(pos[u], pos[v]) <= plain_dist2(pos[v], s);
-}
-
-static uint32_t plain_relative(const Vec2 *pos, uint32_t n, Vec2 s, const Sight *sight, uint32_t *out)
-{
-    uint32_t m = 0;
-    for (uint32_t v = 0; v < n; v++) {
-        bool in = seen(sight, v);
-        for (uint32_t u = 0; u < n && in; u++)
-            in = !(plain_shuts(pos, s, u, v) && seen(sight, u));
-        if (in)
-            out[m++] = v;
-    }
-    return m;
-}
-
-static uint32_t plain_nearest(const Vec2 *pos, uint32_t n, Vec2 s, const Sight *sight)
-{
-    uint32_t best = NO_POINT;
-    for (uint32_t v = 0; v < n; v++)
-        if (seen(sight, v) && (best == NO_POINT || plain_nearer(pos, s, v, best)))
-            best = v;
-    return best;
-}
-
-typedef enum { NO, PERHAPS, YES } Answer;
-
-/* Is v a Delaunay neighbour of s: is there a disc with both on its rim and no other node inside? Its centre is m + t n, with m half
- * way and n across; every other node u allows a half-line of t. PERHAPS when what is left is too short to trust. */
-static Answer plain_delaunay(const Vec2 *pos, uint32_t n, Vec2 s, uint32_t v, const Sight *sight)
-{
-    long double px = (long double)pos[v].x - (long double)s.x, py = (long double)pos[v].y - (long double)s.y;
-    long double p2 = px * px + py * py, lo = -1e9L, hi = 1e9L, doubt = 1e-6L;
-    bool shared = false;
-    if (p2 < 1e-12L)
-        return PERHAPS;
-    for (uint32_t u = 0; u < n; u++) {
-        if (u == v || !seen(sight, u))
-            continue;
-        if (plain_dist2(pos[u], pos[v]) < 1e-12) {
-            shared = true; /* of nodes at one place rounding chooses */
-            continue;
-        }
-        /* |c - u| >= |c - s| with c = p / 2 + t (-py, px), all relative to s: 2 c·q <= q² */
-        long double qx = (long double)pos[u].x - (long double)s.x, qy = (long double)pos[u].y - (long double)s.y;
-        long double room = qx * qx + qy * qy - (px * qx + py * qy), slope = 2 * (px * qy - py * qx);
-        if (fabsl(slope) < 1e-14L * p2) {
-            if (room < -1e-9L)
-                return NO;
-            if (room < 1e-9L)
-                return PERHAPS;
-        } else if (slope > 0) {
-            hi = MIN(hi, room / slope);
-        } else {
-            lo = MAX(lo, room / slope);
-        }
-    }
-    /* as long as it is far from s its ends are badly known: scale the doubt */
-    long double end = MIN(fabsl(lo), fabsl(hi)), length = hi - lo;
-    doubt *= 1 + end * end;
-    return length > doubt ? shared ? PERHAPS : YES : length < -doubt ? NO : PERHAPS;
-}
-
-/* Urquhart: Delaunay neighbours that no other Delaunay neighbour shuts out. */
-static void plain_urquhart(const Vec2 *pos, uint32_t n, Vec2 s, const Sight *sight, Answer *out)
-{
-    Answer *delaunay = g_new(Answer, n);
-    for (uint32_t v = 0; v < n; v++)
-        delaunay[v] = seen(sight, v) ? plain_delaunay(pos, n, s, v, sight) : NO;
-    for (uint32_t v = 0; v < n; v++) {
-        out[v] = delaunay[v];
-        for (uint32_t u = 0; u < n && out[v] != NO; u++)
-            if (delaunay[u] != NO && plain_shuts(pos, s, u, v))
-                out[v] = delaunay[u] == YES ? NO : PERHAPS;
-    }
-    g_free(delaunay);
-}
-
 /* ---- comparison ---- */
 
 static const char *const set_name[SET_COUNT] = {"random", "clusters", "grid", "hexagons", "circle", "coincident", "row", "diagonal",
@@ -268,24 +177,37 @@ static void fail_at(const Case *c, const Hood *h, const char *what)
 static void check_relative(const Case *c, const Hood *h, const char *what)
 {
     uint32_t got[HOOD_MAX], *want = g_new(uint32_t, c->n + 1);
-    uint32_t n = members(h, c->pos, got), m = plain_relative(c->pos, c->n, h->s, &c->sight, want);
+    uint32_t n = members(h, c->pos, got), m = plain_relative(c->pos, c->n, h->s, seen, &c->sight, want);
     if (n != m || memcmp(got, want, sizeof *got * n) != 0)
         fail_at(c, h, what);
     g_free(want);
 }
 
-static void check_nearest(const Case *c, const Hood *h, const char *what)
+/* A source of an open pattern. */
+typedef struct {
+    uint32_t v;
+    double d2;
+} Nearest;
+
+static void check_nearest(const Case *c, Vec2 s, Nearest got, const char *what)
 {
-    uint32_t got[HOOD_MAX], n = members(h, c->pos, got), want = plain_nearest(c->pos, c->n, h->s, &c->sight);
-    if (n != (want != NO_POINT) || (n && got[0] != want))
-        fail_at(c, h, what);
+    uint32_t want = plain_nearest(c->pos, c->n, s, seen, &c->sight);
+    if (got.v != want || (want != NO_POINT && got.d2 != plain_dist2(c->pos[want], s)))
+        fail_at(c, &(Hood){.s = s}, what);
+}
+
+static Nearest find_nearest(const Field *f, Vec2 s)
+{
+    Nearest n = {NO_POINT, HUGE_VAL};
+    n.v = quadtree_nearest(f->tree, s, HUGE_VAL, f->sees, f->user, &n.d2);
+    return n;
 }
 
 static void check_urquhart(const Case *c, const Hood *h, const char *what, uint32_t *sure)
 {
     uint32_t got[HOOD_MAX], n = members(h, c->pos, got);
     Answer *want = g_new(Answer, c->n);
-    plain_urquhart(c->pos, c->n, h->s, &c->sight, want);
+    plain_urquhart(c->pos, c->n, h->s, seen, &c->sight, want);
     for (uint32_t v = 0; v < c->n; v++) {
         bool in = bsearch(&v, got, n, sizeof *got, by_index) != NULL;
         *sure += want[v] == YES;
@@ -309,12 +231,13 @@ static void check_set(SetKind kind, uint32_t n, uint32_t first, uint32_t batch, 
     quadtree_init(&c.tree, field_box);
     for (uint32_t i = 0; i < first; i++)
         quadtree_add(&c.tree, c.pos[i], i);
-    Hood near[SOURCES], hood[SOURCES], urquhart[SOURCES];
+    Nearest near[SOURCES];
+    Hood hood[SOURCES], urquhart[SOURCES];
     Cell cell[SOURCES] = {0}, scratch = {0};
     Field f = field_of(&c);
     for (uint32_t k = 0; k < SOURCES; k++) {
         Vec2 s = set_source(kind, k, c.pos, n, &d);
-        nearest_find(&near[k], &f, s);
+        near[k] = find_nearest(&f, s);
         hood_find(&hood[k], &f, s);
         urquhart_find(&urquhart[k], &cell[k], &f, s);
     }
@@ -338,20 +261,19 @@ static void check_set(SetKind kind, uint32_t n, uint32_t first, uint32_t batch, 
                 bool differs = n0 != n1 || memcmp(before, after, sizeof *before * n0) != 0;
                 if (differs && !changed)
                     fail_at(&c, &hood[k], "an unreported change");
-                nearest_update(&near[k], &f, &c.fresh);
+                boxtree_nearest(&c.fresh, c.pos, hood[k].s, f.sees, f.user, &near[k].v, &near[k].d2);
                 urquhart_update(&urquhart[k], &cell[k], &f, &c.fresh);
             }
             if (!look)
                 continue;
             Hood h;
-            check_nearest(&c, &near[k], "nearest_update");
-            nearest_find(&h, &f, near[k].s);
-            check_nearest(&c, &h, "nearest_find");
+            check_nearest(&c, hood[k].s, near[k], "boxtree_nearest");
+            check_nearest(&c, hood[k].s, find_nearest(&f, hood[k].s), "quadtree_nearest");
             check_relative(&c, &hood[k], "hood_update");
-            hood_find(&h, &f, near[k].s);
+            hood_find(&h, &f, hood[k].s);
             check_relative(&c, &h, "hood_find");
             check_urquhart(&c, &urquhart[k], "urquhart_update", sure);
-            urquhart_find(&h, &scratch, &f, near[k].s);
+            urquhart_find(&h, &scratch, &f, hood[k].s);
             check_urquhart(&c, &h, "urquhart_find", sure);
         }
     }
@@ -452,8 +374,6 @@ static void test_at_most_five(void)
 
 /* ---- zones of hoods ---- */
 
-static bool near_zone(Box2 z, Vec2 p) { return box_has(z, p); }
-
 /* A node outside the zone changes nothing. */
 static void test_zone_holds(void)
 {
@@ -471,9 +391,8 @@ static void test_zone_holds(void)
         }
         Field f = field_of(&c);
         Vec2 s = set_source(kind, (uint32_t)round, c.pos, n, &d);
-        Hood near, hood, urquhart;
+        Hood hood, urquhart;
         Cell cell = {0};
-        nearest_find(&near, &f, s);
         hood_find(&hood, &f, s);
         urquhart_find(&urquhart, &cell, &f, s);
         for (uint32_t k = 0; k < 60; k++) {
@@ -484,19 +403,61 @@ static void test_zone_holds(void)
                 continue;
             c.pos[n] = p;
             uint32_t sure = 0;
-            if (!near_zone(near.zone, p))
-                check_nearest(&c, &near, "zone of nearest");
-            if (!near_zone(hood.zone, p))
+            if (!box_has(hood.zone, p))
                 check_relative(&c, &hood, "zone of the relative hood");
-            if (!near_zone(urquhart.zone, p))
+            if (!box_has(urquhart.zone, p))
                 check_urquhart(&c, &urquhart, "zone of Urquhart's hood", &sure);
-            outside += !near_zone(hood.zone, p);
+            outside += !box_has(hood.zone, p);
         }
         cell_clear(&cell);
         quadtree_clear(&c.tree);
         g_free(c.pos);
     }
     g_assert_cmpuint(outside, >, 300 * 60 / 10); /* zones are no excuse: they leave much out */
+}
+
+/* An index that joins a zone when a source comes, and is told of smaller ones since, must not miss a node: what lies outside any zone that
+ * the hood ever had can't matter any more. */
+static void test_zone_shrinks(void)
+{
+    uint32_t skipped = 0;
+    for (uint64_t round = 0; round < 1500; round++) {
+        enum { N = 40 };
+        Dice d = {20000 + round, 0};
+        Vec2 pos[N], s = vec2((roll(&d) - 0.5) * 30, (roll(&d) - 0.5) * 30);
+        Case c = {.kind = round % 2 ? SET_RANDOM : SET_WALK, .pos = pos, .sight = {0, pos}};
+        Box2 room[2] = {field_box, field_box}; /* what all zones so far have in common */
+        Hood hood, urquhart;
+        Cell cell = {0};
+        quadtree_init(&c.tree, field_box);
+        for (c.n = 1; c.n <= N; c.n++) {
+            uint32_t v = c.n - 1;
+            pos[v] = set_point(c.kind, v, v ? pos[v - 1] : vec2(0, 0), &d);
+            quadtree_add(&c.tree, pos[v], v);
+            boxtree_build(&c.fresh, pos, &v, 1);
+            Field f = field_of(&c);
+            if (v == 0) {
+                hood_find(&hood, &f, s);
+                urquhart_find(&urquhart, &cell, &f, s);
+            } else {
+                skipped += !box_has(room[0], pos[v]);
+                if (box_has(room[0], pos[v]))
+                    hood_update(&hood, &f, &c.fresh);
+                if (box_has(room[1], pos[v]))
+                    urquhart_update(&urquhart, &cell, &f, &c.fresh);
+            }
+            const Box2 zone[2] = {hood.zone, urquhart.zone};
+            for (int k = 0; k < 2; k++)
+                room[k] = (Box2){MAX(room[k].x0, zone[k].x0), MAX(room[k].y0, zone[k].y0), MIN(room[k].x1, zone[k].x1), MIN(room[k].y1, zone[k].y1)};
+            uint32_t sure = 0;
+            check_relative(&c, &hood, "a zone that has grown");
+            check_urquhart(&c, &urquhart, "an Urquhart zone that has grown", &sure);
+        }
+        cell_clear(&cell);
+        quadtree_clear(&c.tree);
+        boxtree_clear(&c.fresh);
+    }
+    g_assert_cmpuint(skipped, >, 1000);
 }
 
 /* ---- quadtree ---- */
@@ -516,7 +477,7 @@ static void test_quadtree(void)
                 quadtree_add(&t, pos[i], i);
                 Vec2 p = set_source((SetKind)kind, i, pos, i + 1, &d);
                 double bound = i % 4 ? roll(&d) * 100 : HUGE_VAL, r = roll(&d) * 5, d2 = -1.0;
-                uint32_t want = plain_nearest(pos, i + 1, p, &sight);
+                uint32_t want = plain_nearest(pos, i + 1, p, seen, &sight);
                 if (want != NO_POINT && !(plain_dist2(pos[want], p) < bound))
                     want = NO_POINT;
                 uint32_t got = quadtree_nearest(&t, p, bound, sight.rule ? seen : NULL, &sight, &d2);
@@ -539,6 +500,28 @@ static void test_quadtree(void)
 }
 
 /* ---- box tree ---- */
+
+/* Every point that is nearest to one of some places in the box must be among those found, in ascending order. */
+static void check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, double bound2)
+{
+    uint32_t out[16], found = boxtree_nearest_to(t, pos, b, bound2, out, 16);
+    if (found > 16)
+        return;
+    for (uint32_t k = 1; k < found; k++)
+        g_assert_cmpuint(out[k - 1], <, out[k]);
+    for (int i = 0; i <= 4; i++)
+        for (int j = 0; j <= 4; j++) {
+            Vec2 p = vec2(b.x0 + (b.x1 - b.x0) * i / 4, b.y0 + (b.y1 - b.y0) * j / 4);
+            uint32_t best = 1; /* points are the odd ones */
+            for (uint32_t k = 0; k < n; k++) {
+                uint32_t v = 2 * k + 1;
+                if (plain_dist2(pos[v], p) < plain_dist2(pos[best], p))
+                    best = v;
+            }
+            if (plain_dist2(pos[best], p) < bound2)
+                g_assert_nonnull(bsearch(&best, out, found, sizeof *out, by_index));
+        }
+}
 
 static void test_boxtree(void)
 {
@@ -582,6 +565,8 @@ static void test_boxtree(void)
                 any |= p.x >= b.x0 && p.x <= b.x1 && p.y >= b.y0 && p.y <= b.y1;
             }
             g_assert_cmpint(boxtree_any_in(&t, pos, b), ==, any);
+            if (n)
+                check_nearest_to(&t, pos, n, b, k % 3 ? roll(&d) * 300 : HUGE_VAL);
         }
         g_free(pos);
         g_free(item);
@@ -590,12 +575,6 @@ static void test_boxtree(void)
 }
 
 /* ---- index of zones ---- */
-
-typedef struct {
-    uint32_t *hits;
-} Tally;
-
-static void tally(uint32_t item, void *user) { ((Tally *)user)->hits[item]++; }
 
 static void test_zones(void)
 {
@@ -612,7 +591,8 @@ static void test_zones(void)
             Vec2 *place = g_new(Vec2, n + 1), *point = g_new(Vec2, m);
             Box2 *zone = g_new(Box2, n + 1);
             uint32_t *item = g_new(uint32_t, m);
-            Tally t = {g_new0(uint32_t, n + 1)};
+            uint32_t *hits = g_new0(uint32_t, n + 1), *out = g_new(uint32_t, MAX(n, zones_cells(&z)) + 1);
+            bool *open = g_new0(bool, zones_cells(&z));
             for (uint32_t i = 0; i < n; i++) {
                 place[i] = vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
                 double x = roll(&d) * w * (i % 9 ? 0.05 : 1), y = roll(&d) * h * (i % 9 ? 0.05 : 1);
@@ -626,8 +606,19 @@ static void test_zones(void)
             }
             Boxtree b = {0};
             boxtree_build(&b, point, item, m);
-            zones_raise(&z);
-            zones_visit(&z, &b, point, tally, &t);
+            for (uint32_t i = 0; i < n; i += 7) { /* some shrink, and are raised or not */
+                zone[i] = (Box2){place[i].x, zone[i].y0, zone[i].x1, place[i].y};
+                zones_set(&z, i, zone[i]);
+            }
+            if (round % 2)
+                zones_raise(&z);
+            for (uint32_t k = zones_visit(&z, &b, point, out); k-- > 0;)
+                hits[out[k]]++;
+            uint32_t cells = zones_visit_cells(&z, &b, point, out);
+            for (uint32_t k = 0; k < cells; k++) {
+                g_assert_false(open[out[k]]);
+                open[out[k]] = true;
+            }
             double loose = 1e-6 * (fabs(box.x0) + fabs(box.x1) + fabs(box.y0) + fabs(box.y1));
             for (uint32_t i = 0; i < n; i++) {
                 bool in = false, about = false;
@@ -635,11 +626,15 @@ static void test_zones(void)
                     in |= box_has(zone[i], point[k]);
                     about |= box_has(box_grow(zone[i], loose), point[k]);
                 }
-                g_assert_cmpuint(t.hits[i], <=, 1);
-                if (in)
-                    g_assert_cmpuint(t.hits[i], ==, 1);
+                g_assert_cmpuint(hits[i], <=, 1);
+                uint32_t cell = zones_cell(&z, place[i]);
+                g_assert_true(box_has(zones_cell_box(&z, cell), place[i]));
+                if (in) {
+                    g_assert_cmpuint(hits[i], ==, 1);
+                    g_assert_true(open[cell]);
+                }
                 if (!about)
-                    g_assert_cmpuint(t.hits[i], ==, 0);
+                    g_assert_cmpuint(hits[i], ==, 0);
             }
             for (uint32_t k = 0; k < 200; k++) {
                 Vec2 p = vec2(box.x0 + (roll(&d) * 1.2 - 0.1) * w, box.y0 + (roll(&d) * 1.2 - 0.1) * h);
@@ -654,7 +649,9 @@ static void test_zones(void)
             g_free(point);
             g_free(zone);
             g_free(item);
-            g_free(t.hits);
+            g_free(hits);
+            g_free(out);
+            g_free(open);
             zones_reset(&z);
         }
         zones_clear(&z);
@@ -673,7 +670,8 @@ int main(int argc, char **argv)
         g_free(name);
     }
     g_test_add_func("/neighbours/many", test_many);
-    g_test_add_func("/neighbours/zone", test_zone_holds);
+    g_test_add_func("/neighbours/zone/holds", test_zone_holds);
+    g_test_add_func("/neighbours/zone/shrinks", test_zone_shrinks);
     g_test_add_func("/neighbours/quadtree", test_quadtree);
     g_test_add_func("/neighbours/boxtree", test_boxtree);
     g_test_add_func("/neighbours/zones", test_zones);
