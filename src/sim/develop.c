@@ -196,25 +196,33 @@ static void update_sources(uint32_t first, uint32_t last, void *user)
 
 /* New nodes that a cell of sources looks at, beside each other in memory. */
 enum { FEW = 256 };
+typedef double Pair __attribute__((vector_size(16)));
+typedef int64_t PairMask __attribute__((vector_size(16)));
 typedef struct {
     uint32_t n;
     uint32_t v[FEW]; /* ascending */
-    double x[FEW], y[FEW];
+    union {
+        double at[FEW + 2];
+        Pair pair[FEW / 2 + 1];
+    } x, y; /* an odd number of nodes is followed by a place out of sight */
 } Few;
 
 /* Moves slot k to the nearest of a few new nodes if that is nearer than its old one (which wins a tie, as the older). */
 static void few_nearest(Simulation *s, uint32_t k, const Few *few)
 {
     Vec2 p = s->place[k];
-    double best2 = HUGE_VAL;
-    for (uint32_t j = 0; j < few->n; j++) { /* without branches: nearly all lie farther off */
-        double dx = few->x[j] - p.x, dy = few->y[j] - p.y, d2 = dx * dx + dy * dy;
-        best2 = d2 < best2 ? d2 : best2;
+    const Pair px = {p.x, p.x}, py = {p.y, p.y};
+    Pair least = {HUGE_VAL, HUGE_VAL};
+    for (uint32_t j = 0; j < (few->n + 1) / 2; j++) { /* without branches and two at a time: nearly all lie farther off */
+        Pair dx = few->x.pair[j] - px, dy = few->y.pair[j] - py, d2 = dx * dx + dy * dy;
+        PairMask nearer = d2 < least;
+        least = (Pair)(((PairMask)d2 & nearer) | ((PairMask)least & ~nearer));
     }
+    double best2 = MIN(least[0], least[1]);
     if (best2 >= s->near2[k])
         return;
     for (uint32_t j = 0; j < few->n; j++) {
-        double d2 = vec_dist2(vec2(few->x[j], few->y[j]), p);
+        double d2 = vec_dist2(vec2(few->x.at[j], few->y.at[j]), p);
         if (d2 == best2) {
             s->near2[k] = d2;
             s->near[k] = few->v[j];
@@ -233,9 +241,11 @@ static uint32_t cell_update(Simulation *s, uint32_t cell)
     Few few;
     few.n = s->reach ? FEW + 1 : boxtree_nearest_to(&s->fresh_tree, s->veins.pos, zones_cell_box(&s->zones, cell), most2, few.v, FEW);
     for (uint32_t j = 0; few.n <= FEW && j < few.n; j++) {
-        few.x[j] = s->veins.pos[few.v[j]].x;
-        few.y[j] = s->veins.pos[few.v[j]].y;
+        few.x.at[j] = s->veins.pos[few.v[j]].x;
+        few.y.at[j] = s->veins.pos[few.v[j]].y;
     }
+    if (few.n <= FEW)
+        few.x.at[few.n] = few.y.at[few.n] = HUGE_VAL;
     for (uint32_t k = s->zones.head[cell]; k != NO_POINT; k = s->zones.next[k]) {
         double before = s->near2[k];
         if (before < 0.0)
