@@ -178,20 +178,31 @@ static void source_update(Simulation *s, uint32_t k)
     Source *src = &s->source[k];
     Eye eye;
     Field f = source_field(s, src, &eye);
-    Members old = members_of(src);
+    bool marked = src->tagged | src->spent;
+    Members old;
+    if (marked)
+        old = members_of(src);
     bool changed = s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE ? hood_update(&src->hood, &f, &s->fresh_tree)
                                                                   : urquhart_update(&src->hood, &src->cell, &f, &s->fresh_tree);
     if (!changed)
         return;
-    carry_masks(s, src, &old);
+    if (marked)
+        carry_masks(s, src, &old);
     zones_set(&s->zones, k, src->hood.zone);
 }
 
 static void update_sources(uint32_t first, uint32_t last, void *user)
 {
+    enum { AHEAD = 6, LINE = 64 };
     Simulation *s = user;
-    for (uint32_t k = first; k < last; k++)
+    for (uint32_t k = first; k < last; k++) {
+        if (k + AHEAD < last) { /* most of the time would go to waiting for memory */
+            const char *next = (const char *)&s->source[s->touched[k + AHEAD]];
+            for (int line = 0; line < 9; line++)
+                __builtin_prefetch(next + line * LINE);
+        }
         source_update(s, s->touched[k]);
+    }
 }
 
 /* New nodes that a cell of sources looks at, beside each other in memory. */

@@ -23,15 +23,15 @@ typedef struct {
 
 /* An auxin source. Bit i of a mask speaks of member i of the hood. */
 typedef struct {
-    Hood hood;         /* nodes that it pulls; hood.s is its place */
-    Cell cell;         /* Urquhart neighbourhoods only */
-    Vec2 material;     /* moving frames only */
     uint32_t birth;    /* step */
     bool reached;      /* closed: a vein came within the kill distance; from then on only tagged veins count */
     uint8_t tagged;    /* mask: this member belongs to a tagged vein */
     uint8_t spent;     /* mask: this member can't get nearer */
     uint8_t n_arrived;
+    Hood hood;         /* nodes that it pulls; hood.s is its place */
     uint32_t arrived[HOOD_MAX]; /* tagged veins' nodes that came within the kill distance */
+    Vec2 material;     /* moving frames only */
+    Cell cell;         /* Urquhart neighbourhoods only */
 } Source;
 
 /* One pull of a source at a vein node. */

@@ -80,31 +80,52 @@ static bool sees(const Plain *w, const Auxin *a, uint32_t v)
 }
 
 /* Is u before v in the order of nearness to a place? The older of two equally near nodes is. */
-static bool before(const Plain *w, Vec2 s, uint32_t u, uint32_t v)
+static bool before(const double *d2, uint32_t u, uint32_t v) { return d2[u] < d2[v] || (d2[u] == d2[v] && u < v); }
+
+static uint32_t nearest(const Plain *w, const Auxin *a, const double *d2)
 {
-    double du = far2(w->pos[u], s), dv = far2(w->pos[v], s);
-    return du < dv || (du == dv && u < v);
+    uint32_t best = NONE;
+    for (uint32_t v = 0; v < w->n; v++)
+        if ((best == NONE || before(d2, v, best)) && sees(w, a, v))
+            best = v;
+    return best;
 }
 
-/* Nodes that the source may pull at all: the nearest, or all that no other node stands before (eq. 2). */
-static uint32_t look(const Plain *w, const Auxin *a, uint32_t out[MOST])
+/* Eq. 2: nodes that no other node stands before. */
+static uint32_t relative(const Plain *w, const Auxin *a, const double *d2, uint32_t out[MOST])
 {
     uint32_t n = 0;
     for (uint32_t v = 0; v < w->n; v++) {
-        bool in = sees(w, a, v);
-        double dv = far2(w->pos[v], a->p);
+        bool in = true;
         for (uint32_t u = 0; u < w->n && in; u++)
-            if (u != v && before(w, a->p, u, v) && (w->def->pattern == PATTERN_OPEN || far2(w->pos[u], w->pos[v]) <= dv))
+            if (u != v && before(d2, u, v) && far2(w->pos[u], w->pos[v]) <= d2[v])
                 in = !sees(w, a, u);
-        if (in && n < MOST)
+        if (in && sees(w, a, v) && n < MOST)
             out[n++] = v;
     }
     for (uint32_t i = 1; i < n; i++) /* by nearness */
-        for (uint32_t j = i; j && before(w, a->p, out[j], out[j - 1]); j--) {
+        for (uint32_t j = i; j && before(d2, out[j], out[j - 1]); j--) {
             uint32_t swap = out[j];
             out[j] = out[j - 1];
             out[j - 1] = swap;
         }
+    return n;
+}
+
+/* Nodes that the source may pull at all. */
+static uint32_t look(const Plain *w, const Auxin *a, uint32_t out[MOST])
+{
+    double *d2 = g_new(double, w->n);
+    for (uint32_t v = 0; v < w->n; v++)
+        d2[v] = far2(w->pos[v], a->p);
+    uint32_t n;
+    if (w->def->pattern == PATTERN_OPEN) {
+        out[0] = nearest(w, a, d2);
+        n = out[0] != NONE;
+    } else {
+        n = relative(w, a, d2, out);
+    }
+    g_free(d2);
     return n;
 }
 
