@@ -1,0 +1,266 @@
+/* How growing scales, beside the plain twin and on the static workload.
+ *
+ *     bench_grow [--quick] [PARAMS.ini]
+ *
+ * Prints tables; ends with 1 when the twin grows another network. PARAMS.ini (poplar's) is grown at full size with relative and with
+ * Urquhart's neighbourhoods. Times are of the growth loop alone, one thread and then all. */
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "geom/outline.h"
+#include "lib/leaf.h"
+#include "lib/settings.h"
+#include "plain.h"
+#include "sim/width.h"
+#include "workload.h"
+
+typedef struct {
+    double seconds;
+    SimulationCounts counts;
+    uint64_t graph; /* hash of the network, free of the order of birth within a step */
+    long peak;      /* growth of the process's peak memory, bytes */
+} Result;
+
+static long peak_memory(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss * 1024L;
+}
+
+/* ---- the same graph? ---- */
+
+static uint64_t mix(uint64_t h)
+{
+    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDu;
+    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53u;
+    return h ^ (h >> 33);
+}
+
+/* A node's place to a hundred-thousandth of a segment: sums of pulls may be rounded in another order. */
+static uint64_t place_hash(const Network *net, uint32_t v)
+{
+    return mix((uint64_t)llrint(net->node[v].x * 1e5) + mix((uint64_t)llrint(net->node[v].y * 1e5) + mix(net->node_birth[v])));
+}
+
+/* Sums over nodes and edges, so that their order is of no concern. */
+static uint64_t graph_hash(const Network *net)
+{
+    uint64_t h = net->n_nodes, *place = g_new(uint64_t, net->n_nodes);
+    for (uint32_t v = 0; v < net->n_nodes; v++)
+        h += place[v] = place_hash(net, v);
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        h += mix(mix(place[net->tail[e]]) * mix(place[net->head[e]]) + net->birth[e] + 31u * net->kind[e]);
+    g_free(place);
+    return h;
+}
+
+/* ---- one run, in a process of its own so that its peak memory is its own ---- */
+
+typedef enum { WITH_INDEX, PLAIN } How;
+
+static Result measure(const SimulationDef *def, How how)
+{
+    Result r = {0};
+    long before = peak_memory();
+    gint64 start = g_get_monotonic_time();
+    Network *net;
+    if (how == PLAIN) {
+        net = plain_grow(def, &r.counts);
+    } else {
+        GError *error = NULL;
+        Simulation *s = simulation_new(def, &error);
+        if (!s) {
+            fprintf(stderr, "%s\n", error->message);
+            _exit(1);
+        }
+        while (simulation_step(s))
+            ;
+        r.counts = simulation_counts(s);
+        r.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+        r.peak = peak_memory() - before;
+        net = simulation_network(s);
+        simulation_free(s);
+    }
+    if (how == PLAIN) {
+        r.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+        r.peak = peak_memory() - before;
+    }
+    r.graph = graph_hash(net);
+    network_free(net);
+    return r;
+}
+
+static Result run(const SimulationDef *def, How how)
+{
+    Result r;
+    int channel[2];
+    fflush(stdout);
+    if (pipe(channel) != 0)
+        g_error("no pipe");
+    pid_t child = fork();
+    if (child == 0) {
+        r = measure(def, how);
+        gssize n = write(channel[1], &r, sizeof r);
+        _exit(n == (gssize)sizeof r ? 0 : 1);
+    }
+    close(channel[1]);
+    gssize n = read(channel[0], &r, sizeof r);
+    close(channel[0]);
+    waitpid(child, NULL, 0);
+    if (n != (gssize)sizeof r)
+        g_error("a run failed");
+    return r;
+}
+
+/* ---- tables ---- */
+
+static void heading(const char *title)
+{
+    printf("\n%s\n\n| %-26s | %8s | %6s | %8s | %8s | %9s | %8s | %9s | %8s |\n", title, "case", "seconds", "steps", "nodes", "left", "updates",
+           "us/node", "us/update", "bytes/n");
+    printf("| -------------------------- | -------: | -----: | -------: | -------: | --------: | -------: | --------: | -------: |\n");
+}
+
+static void row(const char *name, const Result *r)
+{
+    const SimulationCounts *c = &r->counts;
+    double us = r->seconds * 1e6;
+    printf("| %-26s | %8.3f | %6u | %8u | %8u | %9.2e | %8.2f | %9.3f | %8.0f |\n", name, r->seconds, c->step, c->nodes, c->sources,
+           (double)c->updates, us / c->nodes, c->updates ? us / (double)c->updates : 0.0, (double)r->peak / c->nodes);
+    fflush(stdout);
+}
+
+/* Both ways; FALSE when they differ. */
+static gboolean beside_plain(const char *name, SimulationDef def)
+{
+    def.threads = 1;
+    Result fast = run(&def, WITH_INDEX), plain = run(&def, PLAIN);
+    char *label = g_strdup_printf("%s, plain twin", name);
+    row(name, &fast);
+    row(label, &plain);
+    g_free(label);
+    gboolean same = fast.graph == plain.graph && fast.counts.nodes == plain.counts.nodes && fast.counts.joins == plain.counts.joins;
+    printf("%s: %.0f times as fast, %s\n", name, plain.seconds / fast.seconds, same ? "the same network" : "ANOTHER NETWORK");
+    return same;
+}
+
+static Polygon *ovate(void)
+{
+    OutlineDef def = outline_def_default();
+    return outline_new(&def, NULL);
+}
+
+/* Row 9e of the paper's table 1 (kill distance 1), or the same open, at a final length. */
+static SimulationDef row_9e(const Polygon *leaf, Pattern pattern, double final_length)
+{
+    SimulationDef d = simulation_def_default();
+    d.leaf = leaf;
+    d.growth.kind = GROWTH_MARGINAL;
+    d.growth.initial_length = 270;
+    d.growth.final_length = final_length;
+    d.growth.step = 8;
+    d.pattern = pattern;
+    d.threads = 1;
+    return d;
+}
+
+static gboolean bench_sizes(gboolean quick)
+{
+    gboolean same = TRUE;
+    Polygon *leaf = ovate();
+    const double length[] = {400, 800, 1600};
+    for (int p = 0; p < 2; p++) {
+        heading(p ? "Closed, marginal growth (9e), final length 400, 800, 1600" : "Open, the same leaves");
+        for (int i = 0; i < (quick ? 2 : 3); i++) {
+            SimulationDef d = row_9e(leaf, p ? PATTERN_CLOSED : PATTERN_OPEN, length[i]);
+            char *name = g_strdup_printf("%s %g", p ? "closed" : "open", length[i]);
+            if (i == 0) {
+                same &= beside_plain(name, d);
+            } else {
+                Result r = run(&d, WITH_INDEX);
+                row(name, &r);
+            }
+            g_free(name);
+        }
+    }
+    polygon_free(leaf);
+    return same;
+}
+
+static gboolean bench_static(gboolean quick)
+{
+    gboolean same = TRUE;
+    heading("Static workload (seeds 1001, 1002, 1003)");
+    for (int p = 0; p < 2; p++)
+        for (uint32_t i = 0, n = 1000; i < (p || quick ? 2 : 3); i++, n *= 10) {
+            Workload *w = workload_new(n, 1001 + i, p ? PATTERN_CLOSED : PATTERN_OPEN);
+            char *name = g_strdup_printf("%s %u", p ? "closed" : "open", n);
+            w->def.threads = 1;
+            if (i == 0) {
+                same &= beside_plain(name, w->def);
+            } else {
+                Result r = run(&w->def, WITH_INDEX);
+                row(name, &r);
+                w->def.threads = 0;
+                char *all = g_strdup_printf("%s, all threads", name);
+                r = run(&w->def, WITH_INDEX);
+                row(all, &r);
+                g_free(all);
+            }
+            g_free(name);
+            workload_free(w);
+        }
+    return same;
+}
+
+/* A model of params/ at its full size, with both neighbourhoods. */
+static gboolean bench_model(const char *path)
+{
+    GError *error = NULL;
+    Params *p = params_load(path, &error);
+    Polygon *leaf = p ? settings_outline(p, &error) : NULL;
+    if (!leaf) {
+        fprintf(stderr, "%s\n", error->message);
+        return FALSE;
+    }
+    heading(path);
+    for (int n = 0; n < 2; n++)
+        for (unsigned threads = 1; threads < 2; threads++) {
+            SimulationDef d;
+            if (!settings_simulation(p, leaf, 1, threads, &d, &error)) {
+                fprintf(stderr, "%s\n", error->message);
+                return FALSE;
+            }
+            d.pattern = PATTERN_CLOSED;
+            d.neighbourhood = n ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE;
+            Result r = run(&d, WITH_INDEX);
+            row(n ? "Urquhart" : "relative", &r);
+            settings_simulation_clear(&d);
+        }
+    polygon_free(leaf);
+    params_free(p);
+    return TRUE;
+}
+
+int main(int argc, char **argv)
+{
+    gboolean quick = FALSE, ok = TRUE;
+    const char *model = NULL;
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--quick") == 0)
+            quick = TRUE;
+        else
+            model = argv[i];
+    }
+    ok &= bench_static(quick);
+    ok &= bench_sizes(quick);
+    if (model)
+        ok &= bench_model(model);
+    if (!ok)
+        fprintf(stderr, "bench_grow: the plain twin grew another network, or a run failed\n");
+    return ok ? 0 : 1;
+}
