@@ -60,7 +60,7 @@ static uint64_t graph_hash(const Network *net)
 
 /* ---- one run, in a process of its own so that its peak memory is its own ---- */
 
-typedef enum { WITH_INDEX, PLAIN } How;
+typedef enum { WITH_INDEX, PLAIN } How; /* src/sim, or the twin */
 
 static Result measure(const SimulationDef *def, How how)
 {

@@ -79,54 +79,55 @@ static bool sees(const Plain *w, const Auxin *a, uint32_t v)
     return reach_sees(w->reach, vec_scale(a->p, k), vec_scale(w->pos[v], k));
 }
 
-/* Is u before v in the order of nearness to a place? The older of two equally near nodes is. */
-static bool before(const double *d2, uint32_t u, uint32_t v) { return d2[u] < d2[v] || (d2[u] == d2[v] && u < v); }
+/* A node as a source sees it. */
+typedef struct {
+    double d2;
+    uint32_t v;
+} Look;
 
-static uint32_t nearest(const Plain *w, const Auxin *a, const double *d2)
+/* By nearness; the older of two equally near nodes comes first. */
+static int by_nearness(const void *a, const void *b)
 {
-    uint32_t best = NONE;
-    for (uint32_t v = 0; v < w->n; v++)
-        if ((best == NONE || before(d2, v, best)) && sees(w, a, v))
-            best = v;
-    return best;
+    const Look *x = a, *y = b;
+    return x->d2 != y->d2 ? (x->d2 > y->d2) - (x->d2 < y->d2) : (x->v > y->v) - (x->v < y->v);
 }
 
-/* Eq. 2: nodes that no other node stands before. */
-static uint32_t relative(const Plain *w, const Auxin *a, const double *d2, uint32_t out[MOST])
+/* Eq. 2: of all nodes by nearness, those that none of the nearer ones shuts out by being nearer to it than the source is. */
+static uint32_t relative(const Plain *w, Look *node, uint32_t n, uint32_t out[MOST])
 {
-    uint32_t n = 0;
-    for (uint32_t v = 0; v < w->n; v++) {
+    uint32_t found = 0;
+    qsort(node, n, sizeof *node, by_nearness);
+    for (uint32_t i = 0; i < n; i++) {
         bool in = true;
-        for (uint32_t u = 0; u < w->n && in; u++)
-            if (u != v && before(d2, u, v) && far2(w->pos[u], w->pos[v]) <= d2[v])
-                in = !sees(w, a, u);
-        if (in && sees(w, a, v) && n < MOST)
-            out[n++] = v;
+        for (uint32_t j = 0; j < i && in; j++)
+            in = far2(w->pos[node[j].v], w->pos[node[i].v]) > node[i].d2;
+        if (in && found < MOST)
+            out[found++] = node[i].v;
     }
-    for (uint32_t i = 1; i < n; i++) /* by nearness */
-        for (uint32_t j = i; j && before(d2, out[j], out[j - 1]); j--) {
-            uint32_t swap = out[j];
-            out[j] = out[j - 1];
-            out[j - 1] = swap;
-        }
-    return n;
+    return found;
 }
 
 /* Nodes that the source may pull at all. */
 static uint32_t look(const Plain *w, const Auxin *a, uint32_t out[MOST])
 {
-    double *d2 = g_new(double, w->n);
+    Look *node = g_new(Look, w->n);
+    uint32_t n = 0, found = 1;
     for (uint32_t v = 0; v < w->n; v++)
-        d2[v] = far2(w->pos[v], a->p);
-    uint32_t n;
-    if (w->def->pattern == PATTERN_OPEN) {
-        out[0] = nearest(w, a, d2);
-        n = out[0] != NONE;
+        if (sees(w, a, v))
+            node[n++] = (Look){far2(w->pos[v], a->p), v};
+    if (w->def->pattern == PATTERN_CLOSED) {
+        found = relative(w, node, n, out);
+    } else if (n == 0) {
+        found = 0;
     } else {
-        n = relative(w, a, d2, out);
+        uint32_t best = 0;
+        for (uint32_t i = 1; i < n; i++)
+            if (node[i].d2 < node[best].d2)
+                best = i;
+        out[0] = node[best].v;
     }
-    g_free(d2);
-    return n;
+    g_free(node);
+    return found;
 }
 
 static double kill_of(const Plain *w) { return w->def->kill_distance * w->blade->unit; }

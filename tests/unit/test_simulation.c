@@ -481,8 +481,36 @@ static void test_seeds(void)
 
 /* ---- a larger leaf ---- */
 
-/* A neighbourhood found from scratch is the one kept up to date: zones of sources far from the veins are large, and small leaves have
- * none. */
+/* Is each neighbourhood that was kept up to date the one found from scratch? Returns how many are not. */
+static uint32_t stale_hoods(const Simulation *s, uint32_t *looked)
+{
+    Cell cell = {0};
+    uint32_t off = 0;
+    for (uint32_t k = 0; k < s->n_sources; k++) {
+        if (!source_is_alive(s, k))
+            continue;
+        Hood h = {.n = 0};
+        Eye eye;
+        Field f = source_field(s, &s->source[k], &eye);
+        uint32_t got[HOOD_MAX], want[HOOD_MAX];
+        if (s->def.pattern == PATTERN_OPEN) {
+            double d2;
+            h.m[0].v = quadtree_nearest(f.tree, s->place[k], HUGE_VAL, f.sees, f.user, &d2);
+            h.n = h.m[0].v != NO_POINT;
+        } else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE) {
+            hood_find(&h, &f, s->place[k]);
+        } else {
+            urquhart_find(&h, &cell, &f, s->place[k]);
+        }
+        uint32_t n = source_nodes(s, k, got), m = sorted_members(&h, want);
+        *looked += 1;
+        off += n != m || memcmp(got, want, sizeof *got * n) != 0;
+    }
+    cell_clear(&cell);
+    return off;
+}
+
+/* Zones of sources far from the veins are large, and small leaves have none. */
 static void large(GrowthKind kind, Pattern pattern, Neighbourhood neighbourhood)
 {
     Polygon *leaf = ovate();
@@ -493,33 +521,9 @@ static void large(GrowthKind kind, Pattern pattern, Neighbourhood neighbourhood)
     d.density = 0.001;
     d.birth_distance_sources = d.birth_distance_veins = 6;
     Simulation *s = start(&d);
-    Cell cell = {0};
-    uint64_t looked = 0, off = 0;
-    while (simulation_step(s)) {
-        if (s->blade->step % 25)
-            continue;
-        for (uint32_t k = 0; k < s->n_sources; k++) {
-            if (!source_is_alive(s, k))
-                continue;
-            Hood h = {.n = 0};
-            Eye eye;
-            Field f = source_field(s, &s->source[k], &eye);
-            uint32_t got[HOOD_MAX], want[HOOD_MAX];
-            if (pattern == PATTERN_OPEN) {
-                double d2;
-                h.m[0].v = quadtree_nearest(f.tree, s->place[k], HUGE_VAL, f.sees, f.user, &d2);
-                h.n = h.m[0].v != NO_POINT;
-            } else if (neighbourhood == NEIGHBOURHOOD_RELATIVE) {
-                hood_find(&h, &f, s->place[k]);
-            } else {
-                urquhart_find(&h, &cell, &f, s->place[k]);
-            }
-            uint32_t n = source_nodes(s, k, got), m = sorted_members(&h, want);
-            looked++;
-            off += n != m || memcmp(got, want, sizeof *got * n) != 0;
-        }
-    }
-    cell_clear(&cell);
+    uint32_t looked = 0, off = 0;
+    while (simulation_step(s))
+        off += s->blade->step % 25 ? 0 : stale_hoods(s, &looked);
     g_assert_cmpuint(s->veins.n, >, 5000);
     g_assert_cmpuint(looked, >, 200);
     if (pattern == PATTERN_CLOSED && neighbourhood == NEIGHBOURHOOD_URQUHART)
@@ -534,6 +538,23 @@ static void large(GrowthKind kind, Pattern pattern, Neighbourhood neighbourhood)
     network_free(net);
     simulation_free(s);
     polygon_free(leaf);
+}
+
+/* With very many sources their index is not renewed at every step. */
+static void test_many_sources(void)
+{
+    for (int mode = 0; mode < 2; mode++) {
+        Workload *w = workload_new(20000, 1002, mode ? PATTERN_CLOSED : PATTERN_OPEN);
+        w->def.threads = 1;
+        w->def.max_steps = 240;
+        Simulation *s = start(&w->def);
+        uint32_t looked = 0;
+        while (simulation_step(s))
+            if (s->blade->step % 48 == 0)
+                g_assert_cmpuint(stale_hoods(s, &looked), ==, 0);
+        simulation_free(s);
+        workload_free(w);
+    }
 }
 
 static void test_large(void)
@@ -639,14 +660,14 @@ static void test_overshoot(void)
 {
     static const double fast[] = {0, 0.08, 1, 0.08};
     Polygon *leaf = ovate();
-    for (uint64_t seed = 1; seed <= 6; seed++) {
+    for (uint64_t seed = 1; seed <= 2; seed++) {
         SimulationDef d = small(leaf, GROWTH_NONUNIFORM, PATTERN_OPEN, NEIGHBOURHOOD_RELATIVE);
         d.growth.initial_length = 6;
-        d.growth.steps = 50;
+        d.growth.steps = 40;
         d.growth.rate_x = d.growth.rate_y = fast;
         d.kill_distance = 0.05;
         d.birth_distance_sources = d.birth_distance_veins = 0.3;
-        d.density = seed < 4 ? 2 : 0.5;
+        d.density = 1;
         d.max_steps = 50;
         d.seed = seed;
         Simulation *s = start(&d);
@@ -664,10 +685,13 @@ static void test_few_darts(void)
     Polygon *leaf = ovate();
     for (uint32_t kind = 0; kind < 4; kind++) {
         SimulationDef d = small(leaf, (GrowthKind)kind, PATTERN_OPEN, NEIGHBOURHOOD_RELATIVE);
-        d.density = 0.0008; /* 0.6 darts a step on a full-grown leaf */
-        SimulationCounts c;
-        whole_run(&d, 1.0, &c);
-        g_assert_cmpuint(c.placed, >, 0);
+        d.density = 0.0005;
+        Simulation *s = start(&d);
+        while (simulation_step(s))
+            g_assert_cmpuint(simulation_counts(s).step, <, 20000);
+        g_assert_cmpuint(simulation_counts(s).placed, >, 0);
+        network_free(finish(s));
+        simulation_free(s);
     }
     polygon_free(leaf);
 }
@@ -799,6 +823,7 @@ int main(int argc, char **argv)
     g_test_add_func("/simulation/margin", test_margin);
     g_test_add_func("/simulation/seeds", test_seeds);
     g_test_add_func("/simulation/large", test_large);
+    g_test_add_func("/simulation/many-sources", test_many_sources);
     g_test_add_func("/simulation/hard/opposite", test_opposite);
     g_test_add_func("/simulation/hard/coincident", test_coincident);
     g_test_add_func("/simulation/hard/on-seed", test_on_seed);
