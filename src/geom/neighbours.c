@@ -15,7 +15,7 @@ static inline bool excludes(uint32_t u, Vec2 pu, double du2, uint32_t v, Vec2 pv
 /* Squared distance from p to the farthest point of the square. */
 static inline double square_far2(QuadSquare q, Vec2 p)
 {
-    double dx = fabs(p.x - q.centre.x) + q.half, dy = fabs(p.y - q.centre.y) + q.half;
+    double half = quadtree_reach(q), dx = fabs(p.x - q.centre.x) + half, dy = fabs(p.y - q.centre.y) + half;
     return dx * dx + dy * dy;
 }
 
@@ -237,7 +237,8 @@ static bool box_open(const Hood *h, Box2 b, double near2)
 
 static Box2 square_box(QuadSquare q)
 {
-    return (Box2){q.centre.x - q.half, q.centre.y - q.half, q.centre.x + q.half, q.centre.y + q.half};
+    double half = quadtree_reach(q);
+    return (Box2){q.centre.x - half, q.centre.y - half, q.centre.x + half, q.centre.y + half};
 }
 
 static void push_square(Heap *heap, QuadSquare q, Vec2 s)
@@ -523,6 +524,15 @@ static void urquhart_members(Hood *h, const Cell *c, const Field *f)
     h->zone = box_grow((Box2){z.x0 + h->s.x, z.y0 + h->s.y, z.x1 + h->s.x, z.y1 + h->s.y}, slack);
 }
 
+/* A node right on s has no bisector with it; it excludes every other node, for good. */
+static void urquhart_collapse(Hood *h, Cell *c, uint32_t v)
+{
+    c->n = 0;
+    h->n = 1;
+    h->m[0] = (Neighbour){h->s, 0.0, v};
+    h->zone = box_empty();
+}
+
 void urquhart_find(Hood *h, Cell *c, const Field *f, Vec2 s)
 {
     *h = (Hood){.s = s};
@@ -534,6 +544,10 @@ void urquhart_find(Hood *h, Cell *c, const Field *f, Vec2 s)
     push_square(&heap, quadtree_root(f->tree), s);
     while (heap.n) {
         Item it = heap_pop(&heap);
+        if (it.point != NO_POINT && it.d2 == 0.0) {
+            urquhart_collapse(h, c, it.point);
+            break;
+        }
         if (it.point != NO_POINT)
             cell_cut(c, it.point, vec_sub(f->pos[it.point], s));
         else if (box_cuts(c, square_box(it.square), s))
@@ -541,7 +555,8 @@ void urquhart_find(Hood *h, Cell *c, const Field *f, Vec2 s)
     }
     if (heap.item != heap.local)
         g_free(heap.item);
-    urquhart_members(h, c, f);
+    if (c->n)
+        urquhart_members(h, c, f);
 }
 
 bool urquhart_update(Hood *h, Cell *c, const Field *f, const Boxtree *fresh)
@@ -562,6 +577,10 @@ bool urquhart_update(Hood *h, Cell *c, const Field *f, const Boxtree *fresh)
         for (uint32_t i = n->first; i < n->first + n->count; i++) {
             uint32_t v = fresh->item[i];
             Vec2 p = vec_sub(f->pos[v], h->s);
+            if (c->n && vec_norm2(p) == 0.0 && (!f->sees || f->sees(f->user, v))) {
+                urquhart_collapse(h, c, v);
+                return true;
+            }
             if (!cell_cuts(c, p) || (f->sees && !f->sees(f->user, v)))
                 continue;
             cell_cut(c, v, p);

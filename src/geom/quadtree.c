@@ -79,14 +79,13 @@ static void split(Quadtree *t, QuadSquare q)
 void quadtree_add(Quadtree *t, Vec2 p, uint32_t i)
 {
     g_assert(fabs(p.x - t->centre.x) <= t->half && fabs(p.y - t->centre.y) <= t->half);
+    const double least = t->half * 0x1p-38; /* coincident points share a leaf of this size */
     QuadSquare q = quadtree_root(t);
-    for (int depth = 0;; depth++) {
-        while (t->node[q.node].child) {
+    for (;;) {
+        while (t->node[q.node].child)
             q = quadtree_quadrant(t, q, quadrant_of(q, p));
-            depth++;
-        }
         uint32_t b = t->node[q.node].bucket;
-        if (b == NO_POINT || t->bucket[b].count < QUAD_BUCKET || depth >= QUAD_DEPTH - 2) /* deep: coincident points share a leaf */
+        if (b == NO_POINT || t->bucket[b].count < QUAD_BUCKET || q.half <= least)
             break;
         split(t, q);
     }

@@ -56,9 +56,13 @@ static inline QuadSquare quadtree_quadrant(const Quadtree *t, QuadSquare q, unsi
     return (QuadSquare){t->node[q.node].child + k, c, h};
 }
 
+/* Half a side, a little more: a point may lie outside its square by the rounding of the centres, which is up to 2^-10 of the smallest
+ * squares' sides. */
+static inline double quadtree_reach(QuadSquare q) { return q.half * (1.0 + 0x1p-8); }
+
 static inline double quadtree_square_dist2(QuadSquare q, Vec2 p)
 {
-    double dx = fabs(p.x - q.centre.x) - q.half, dy = fabs(p.y - q.centre.y) - q.half;
+    double half = quadtree_reach(q), dx = fabs(p.x - q.centre.x) - half, dy = fabs(p.y - q.centre.y) - half;
     dx = dx > 0.0 ? dx : 0.0;
     dy = dy > 0.0 ? dy : 0.0;
     return dx * dx + dy * dy;

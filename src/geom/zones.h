@@ -38,7 +38,7 @@ Box2 zones_cell_box(const Zones *z, uint32_t cell);
 /* Adds item number z->n (items are numbered as they are added) at place p. */
 void zones_add(Zones *z, Vec2 p, Box2 zone);
 
-/* Gives an item a smaller zone. The boxes above it stay what they are, larger than need be, until zones_raise. */
+/* Gives an item another zone. The boxes above it stay what they are until zones_raise. */
 void zones_set(Zones *z, uint32_t item, Box2 zone);
 
 /* Recomputes all boxes from the items' zones. O(items + cells). */

@@ -34,6 +34,9 @@ static void pull_add(Simulation *s, uint32_t source, uint8_t member, uint32_t v,
     p->sum = vec_add(p->sum, towards);
 }
 
+/* A node nearer than this to a source can't get nearer by a step of D = 1, only past it: the source lets go of it. Segments². */
+static const double overshoot2 = 0.25;
+
 /* Members that the source pulls now. A reached source of a closed pattern waits for its tagged veins alone, and not for those that
  * have arrived. */
 static uint8_t pulling(const Simulation *s, const Source *src)
@@ -42,7 +45,7 @@ static uint8_t pulling(const Simulation *s, const Source *src)
     uint8_t mask = 0;
     for (uint32_t i = 0; i < src->hood.n; i++) {
         uint8_t bit = (uint8_t)(1u << i);
-        if (src->spent & bit)
+        if ((src->spent & bit) || src->hood.m[i].d2 <= overshoot2 * s->blade->unit * s->blade->unit)
             continue;
         if (src->reached && (!(src->tagged & bit) || src->hood.m[i].d2 < kill * kill))
             continue;
@@ -56,18 +59,18 @@ static uint32_t gather_pulls(Simulation *s)
 {
     uint32_t live = 0;
     bool open = s->def.pattern == PATTERN_OPEN;
+    double past = overshoot2 * s->blade->unit * s->blade->unit;
     s->n_pull = s->n_pulled = 0;
     for (uint32_t k = 0; k < s->n_sources; k++) {
         if (s->idle[k])
             continue;
-        uint8_t mask = open ? s->near[k] != NO_POINT : pulling(s, &s->source[k]);
+        uint8_t mask = open ? s->near[k] != NO_POINT && s->near2[k] > past : pulling(s, &s->source[k]);
         live += mask != 0;
         for (uint8_t i = 0; mask; i++, mask >>= 1) {
             if (!(mask & 1))
                 continue;
             Neighbour m = source_member(s, k, i);
-            if (m.d2 > 0.0)
-                pull_add(s, k, i, m.v, vec_scale(vec_sub(s->place[k], m.p), 1.0 / sqrt(m.d2)));
+            pull_add(s, k, i, m.v, vec_scale(vec_sub(s->place[k], m.p), 1.0 / sqrt(m.d2)));
         }
     }
     return live;
@@ -291,7 +294,8 @@ static void update_neighbourhoods(Simulation *s)
 {
     enum { GRAIN = 512 };
     bool open = s->def.pattern == PATTERN_OPEN;
-    if (s->blade->step % (1 + s->n_sources / 8192) == 0)
+    /* Discs only shrink, so boxes that are not raised stay right, if larger than need be; other zones may shift. */
+    if (!open || s->blade->step % (1 + s->n_sources / 8192) == 0)
         zones_raise(&s->zones);
     boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
     uint32_t room = MAX(s->n_sources, zones_cells(&s->zones));
@@ -363,7 +367,7 @@ static bool all_arrived(Simulation *s, Source *src)
             src->tagged &= (uint8_t)~bit;
             if (src->n_arrived < HOOD_MAX)
                 src->arrived[src->n_arrived++] = src->hood.m[i].v;
-        } else if (!(src->spent & bit)) {
+        } else if (!(src->spent & bit) && src->hood.m[i].d2 > overshoot2 * s->blade->unit * s->blade->unit) {
             waiting = true;
         }
     }

@@ -214,6 +214,7 @@ Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
     b->step = b->last_step; /* look at the end, then start */
     refresh(b);
     b->widest = b->box;
+    b->last_length = b->length;
     b->step = 0;
     refresh(b);
     b->widest = box_union(b->widest, b->box);

@@ -34,7 +34,7 @@ GQuark growth_error_quark(void);
 typedef struct Blade Blade;
 struct Blade {
     uint32_t step, last_step; /* now; the step at which growth ends */
-    double length;            /* leaf length now, segments */
+    double length, last_length; /* leaf length now and at the end, segments */
     double scale;             /* leaf lengths to frame */
     double unit;              /* one segment in the frame */
     double area;              /* segments² */

@@ -50,9 +50,12 @@ static void carry_source(Simulation *s, uint32_t k)
 static void carry_along(Simulation *s)
 {
     Veins *v = &s->veins;
-    for (uint32_t i = 0; i < v->n; i++)
+    Box2 field = s->blade->widest;
+    for (uint32_t i = 0; i < v->n; i++) {
         v->pos[i] = blade_place(s->blade, v->material[i]);
-    quadtree_reset(&v->tree, box_grow(s->blade->widest, 4.0));
+        field = box_add(field, v->pos[i]); /* one born off the blade is carried farther off */
+    }
+    quadtree_reset(&v->tree, box_grow(field, 4.0));
     for (uint32_t i = 0; i < v->n; i++)
         quadtree_add(&v->tree, v->pos[i], i);
     for (uint32_t k = 0; k < s->n_sources; k++)
@@ -77,7 +80,7 @@ static EndReason judge(const Simulation *s, uint32_t live)
     if (s->blade->step < s->blade->last_step || sources_waiting(s))
         return END_RUNNING;
     if (sources_alive(s) == 0)
-        return END_NO_SOURCES;
+        return sources_expected(s) ? END_RUNNING : END_NO_SOURCES;
     return live == 0 && s->n_fresh == 0 ? END_UNREACHED : END_RUNNING;
 }
 
@@ -98,7 +101,7 @@ bool simulation_step(Simulation *s)
 
 static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
 {
-    double area = d->leaf->area * blade_length_at(b, b->last_step) * blade_length_at(b, b->last_step);
+    double area = d->leaf->area * b->last_length * b->last_length;
     if (d->placement == PLACEMENT_DARTS && d->density * area > 1e8) {
         g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
                     "sources.density = %g asks for %.3g darts a step on a blade of %.3g square segments; at most 1e8 are possible",
@@ -117,7 +120,7 @@ static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
 /* About how far apart sources will lie, for the cell size of their index. */
 static double source_spacing(const SimulationDef *d, const Blade *b)
 {
-    double length = blade_length_at(b, b->last_step), apart = 1.0;
+    double length = b->last_length, apart = 1.0;
     if (d->placement == PLACEMENT_MARGIN)
         apart = sqrt(1.0 / MAX(d->density, 1e-12));
     if (d->placement == PLACEMENT_LIST)
@@ -219,7 +222,7 @@ const Blade *simulation_blade(const Simulation *s) { return s->blade; }
 double simulation_done(const Simulation *s)
 {
     /* a tip advances by one segment a step, so a run takes about as many steps as the leaf is long, and the growth before */
-    double expected = MAX((double)s->blade->last_step, blade_length_at(s->blade, s->blade->last_step) * 1.1);
+    double expected = MAX((double)s->blade->last_step, s->blade->last_length * 1.1);
     double part = (double)s->blade->step / expected;
     return s->counts.end != END_RUNNING ? 1.0 : part < 0.99 ? part : 0.99;
 }

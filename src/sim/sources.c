@@ -130,9 +130,20 @@ static void throw_darts(Simulation *s)
     s->counts.darts += n;
     for (uint64_t i = 0; i < n; i++) {
         Vec2 p;
-        if (dart(s, i, &p) && vacant(s, p))
+        s->misses++;
+        if (dart(s, i, &p) && vacant(s, p)) {
             source_add(s, p);
+            s->misses = 0;
+        }
     }
+}
+
+/* Where few darts are thrown a step, a blade without a source need not be full: only when some darts in a row have found no room. */
+bool sources_expected(const Simulation *s)
+{
+    enum { ENOUGH = 20, PATIENCE = 10000 };
+    double darts = s->def.density * s->blade->area;
+    return s->def.placement == PLACEMENT_DARTS && !s->def.only_while_growing && s->misses < ENOUGH && darts * PATIENCE > ENOUGH;
 }
 
 /* Waiting sources whose time has come. The precomputed set keeps b_s already; a listed source is placed as the user wants it. */
@@ -273,7 +284,7 @@ static bool in_reach(const Simulation *s, Vec2 p)
 {
     if (s->blade->moving)
         return box_has(s->blade->widest, p);
-    double scale = blade_length_at(s->blade, s->blade->last_step);
+    double scale = s->blade->last_length;
     Vec2 leaf = vec_scale(p, 1.0 / scale);
     return polygon_contains(s->def.leaf, leaf) || polygon_depth(s->def.leaf, leaf) * scale >= -1.0;
 }
@@ -287,7 +298,7 @@ static gboolean prepare_list(Simulation *s, GError **error)
             continue;
         g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
                     "sources.file: source %u at %g,%g lies outside the blade, which is %g segments long in the end", i + 1,
-                    s->waiting[i].pos.x, s->waiting[i].pos.y, blade_length_at(s->blade, s->blade->last_step));
+                    s->waiting[i].pos.x, s->waiting[i].pos.y, s->blade->last_length);
         return FALSE;
     }
     return TRUE;

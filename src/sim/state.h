@@ -64,6 +64,7 @@ struct Simulation {
     uint32_t n_sources, cap_sources, n_removed, n_unsorted;
     Zones zones;      /* of the sources; item = slot */
     double dart_carry;
+    uint32_t misses; /* darts in a row that found no room */
     /* sources that wait to appear (margin, list), in the order in which they may */
     ListedSource *waiting;
     uint32_t n_waiting, next_waiting;
@@ -93,6 +94,7 @@ void source_look(Simulation *s, uint32_t k); /* finds the neighbourhood of slot 
 void source_remove(Simulation *s, uint32_t k);
 void sources_sort(Simulation *s);            /* drops removed slots, sorts by place, rebuilds s->zones */
 bool sources_waiting(const Simulation *s);
+bool sources_expected(const Simulation *s); /* darts may still find room */
 
 /* develop.c */
 uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there are */

@@ -2,8 +2,8 @@
  *
  *     bench_grow [--quick] [PARAMS.ini]
  *
- * Prints tables; ends with 1 when the twin grows another network. PARAMS.ini (poplar's) is grown at full size with relative and with
- * Urquhart's neighbourhoods. Times are of the growth loop alone, one thread and then all. */
+ * Prints tables; ends with 1 when the twin grows another network. PARAMS.ini (poplar's) is grown at full size with
+ * relative and with Urquhart's neighbourhoods. Times are of the growth loop alone, one thread and then all. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -43,7 +43,8 @@ static uint64_t mix(uint64_t h)
 /* A node's place to a hundred-thousandth of a segment: sums of pulls may be rounded in another order. */
 static uint64_t place_hash(const Network *net, uint32_t v)
 {
-    return mix((uint64_t)llrint(net->node[v].x * 1e5) + mix((uint64_t)llrint(net->node[v].y * 1e5) + mix(net->node_birth[v])));
+    return mix((uint64_t)llrint(net->node[v].x * 1e5) +
+               mix((uint64_t)llrint(net->node[v].y * 1e5) + mix(net->node_birth[v])));
 }
 
 /* Sums over nodes and edges, so that their order is of no concern. */
@@ -120,17 +121,19 @@ static Result run(const SimulationDef *def, How how)
 
 static void heading(const char *title)
 {
-    printf("\n%s\n\n| %-26s | %8s | %6s | %8s | %8s | %9s | %8s | %9s | %8s |\n", title, "case", "seconds", "steps", "nodes", "left", "updates",
-           "us/node", "us/update", "bytes/n");
-    printf("| -------------------------- | -------: | -----: | -------: | -------: | --------: | -------: | --------: | -------: |\n");
+    printf("\n%s\n\n| %-26s | %8s | %6s | %8s | %8s | %9s | %8s | %9s | %8s |\n", title, "case", "seconds", "steps",
+           "nodes", "left", "updates", "us/node", "us/update", "bytes/n");
+    printf("| -------------------------- | -------: | -----: | -------: | -------: | --------: | -------: | --------: "
+           "| -------: |\n");
 }
 
 static void row(const char *name, const Result *r)
 {
     const SimulationCounts *c = &r->counts;
     double us = r->seconds * 1e6;
-    printf("| %-26s | %8.3f | %6u | %8u | %8u | %9.2e | %8.2f | %9.3f | %8.0f |\n", name, r->seconds, c->step, c->nodes, c->sources,
-           (double)c->updates, us / c->nodes, c->updates ? us / (double)c->updates : 0.0, (double)r->peak / c->nodes);
+    printf("| %-26s | %8.3f | %6u | %8u | %8u | %9.2e | %8.2f | %9.3f | %8.0f |\n", name, r->seconds, c->step, c->nodes,
+           c->sources, (double)c->updates, us / c->nodes, c->updates ? us / (double)c->updates : 0.0,
+           (double)r->peak / c->nodes);
     fflush(stdout);
 }
 
@@ -143,8 +146,10 @@ static gboolean beside_plain(const char *name, SimulationDef def)
     row(name, &fast);
     row(label, &plain);
     g_free(label);
-    gboolean same = fast.graph == plain.graph && fast.counts.nodes == plain.counts.nodes && fast.counts.joins == plain.counts.joins;
-    printf("%s: %.0f times as fast, %s\n", name, plain.seconds / fast.seconds, same ? "the same network" : "ANOTHER NETWORK");
+    gboolean same =
+        fast.graph == plain.graph && fast.counts.nodes == plain.counts.nodes && fast.counts.joins == plain.counts.joins;
+    printf("%s: %.0f times as fast, %s\n", name, plain.seconds / fast.seconds,
+           same ? "the same network" : "ANOTHER NETWORK");
     return same;
 }
 

@@ -38,7 +38,10 @@ typedef struct {
     SimulationCounts counts;
 } Plain;
 
-static double far2(Vec2 a, Vec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+static double far2(Vec2 a, Vec2 b)
+{
+    return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
+}
 
 static uint32_t add_node(Plain *w, Vec2 p, Vec2 material, uint32_t parent)
 {
@@ -92,7 +95,8 @@ static int by_nearness(const void *a, const void *b)
     return x->d2 != y->d2 ? (x->d2 > y->d2) - (x->d2 < y->d2) : (x->v > y->v) - (x->v < y->v);
 }
 
-/* Eq. 2: of all nodes by nearness, those that none of the nearer ones shuts out by being nearer to it than the source is. */
+/* Eq. 2: of all nodes by nearness, those that none of the nearer ones shuts out by being nearer to it than the source
+ * is. */
 static uint32_t relative(const Plain *w, Look *node, uint32_t n, uint32_t out[MOST])
 {
     uint32_t found = 0;
@@ -130,12 +134,19 @@ static uint32_t look(const Plain *w, const Auxin *a, uint32_t out[MOST])
     return found;
 }
 
-static double kill_of(const Plain *w) { return w->def->kill_distance * w->blade->unit; }
+static double kill_of(const Plain *w)
+{
+    return w->def->kill_distance * w->blade->unit;
+}
 
-static bool killed(const Plain *w, const Auxin *a, uint32_t v) { return far2(w->pos[v], a->p) < kill_of(w) * kill_of(w); }
+static bool killed(const Plain *w, const Auxin *a, uint32_t v)
+{
+    return far2(w->pos[v], a->p) < kill_of(w) * kill_of(w);
+}
 
-/* New neighbours of a source. Members that stay keep their marks and places in the list; newcomers follow by nearness, and have the tag if their
- * parent had it and has not arrived. `anew`: the whole list by nearness, tags alone kept (after the blade has moved). */
+/* New neighbours of a source. Members that stay keep their marks and places in the list; newcomers follow by nearness,
+ * and have the tag if their parent had it and has not arrived. `anew`: the whole list by nearness, tags alone kept
+ * (after the blade has moved). */
 static void renew(const Plain *w, Auxin *a, bool anew)
 {
     Auxin old = *a;
@@ -195,7 +206,10 @@ static bool auxin_within(const Plain *w, Vec2 p, double r)
     return false;
 }
 
-static double clearance(const Plain *w) { return MAX(w->def->birth_distance_veins, w->def->kill_distance) * w->blade->unit; }
+static double clearance(const Plain *w)
+{
+    return MAX(w->def->birth_distance_veins, w->def->kill_distance) * w->blade->unit;
+}
 
 static void throw_darts(Plain *w)
 {
@@ -213,7 +227,8 @@ static void throw_darts(Plain *w)
             Vec2 p = vec2(b.x0 + u[0] * (b.x1 - b.x0), b.y0 + u[1] * (b.y1 - b.y0));
             if (!blade_contains(w->blade, p))
                 continue;
-            if (!auxin_within(w, p, w->def->birth_distance_sources * w->blade->unit) && !node_within(w, p, clearance(w)))
+            if (!auxin_within(w, p, w->def->birth_distance_sources * w->blade->unit) &&
+                !node_within(w, p, clearance(w)))
                 add_auxin(w, p);
             break;
         }
@@ -421,7 +436,8 @@ static void prepare_margin(Plain *w)
             free = !(far2(w->waiting[k].pos, s.pos) < r * r);
         if (!free)
             continue;
-        while (s.step < w->blade->last_step && !polygon_contains(w->def->leaf, vec_scale(s.pos, 1.0 / blade_scale_at(w->blade, s.step))))
+        while (s.step < w->blade->last_step &&
+               !polygon_contains(w->def->leaf, vec_scale(s.pos, 1.0 / blade_scale_at(w->blade, s.step))))
             s.step++;
         w->waiting[w->n_waiting++] = s;
     }
@@ -441,7 +457,8 @@ static void sort_waiting(Plain *w)
 
 static void set_up(Plain *w, const SimulationDef *def)
 {
-    *w = (Plain){.def = def, .blade = blade_new(def->leaf, &def->growth, NULL), .reach = reach_new(def->leaf, def->sinus_depth)};
+    *w = (Plain){
+        .def = def, .blade = blade_new(def->leaf, &def->growth, NULL), .reach = reach_new(def->leaf, def->sinus_depth)};
     if (reach_is_trivial(w->reach)) {
         reach_free(w->reach);
         w->reach = NULL;

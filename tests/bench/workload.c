@@ -10,7 +10,10 @@ static double next(uint64_t *state)
 }
 
 /* The file format of the workload has six decimals. */
-static double six_decimals(double x) { return rint(x * 1e6) / 1e6; }
+static double six_decimals(double x)
+{
+    return rint(x * 1e6) / 1e6;
+}
 
 /* Dart throwing over the ellipse with half axes b and a = 2 b, base at the origin. A grid finds the neighbours. */
 static void throw_darts(Workload *w, uint64_t seed, double b)

@@ -1,5 +1,6 @@
-/* The static workload that public implementations were timed on: auxin sources spread over a 2:1 ellipse, about 5 segments apart, none nearer
- * than 3.5 to another; one first vein node at the base, kill distance 2, no growth. The same points for a seed everywhere. */
+/* The static workload that public implementations were timed on: auxin sources spread over a 2:1 ellipse, about 5
+ * segments apart, none nearer than 3.5 to another; one first vein node at the base, kill distance 2, no growth. The
+ * same points for a seed everywhere. */
 #ifndef BENCH_WORKLOAD_H
 #define BENCH_WORKLOAD_H
 

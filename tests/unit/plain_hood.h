@@ -6,9 +6,15 @@
 
 #include "geom/neighbours.h"
 
-static inline bool plain_sees(PointFilter sees, const void *user, uint32_t v) { return !sees || sees(user, v); }
+static inline bool plain_sees(PointFilter sees, const void *user, uint32_t v)
+{
+    return !sees || sees(user, v);
+}
 
-static inline double plain_dist2(Vec2 a, Vec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+static inline double plain_dist2(Vec2 a, Vec2 b)
+{
+    return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
+}
 
 /* Nearer to s than v: of two equally near ones the smaller index. */
 static inline bool plain_nearer(const Vec2 *pos, Vec2 s, uint32_t u, uint32_t v)
@@ -23,7 +29,8 @@ static inline bool plain_shuts(const Vec2 *pos, Vec2 s, uint32_t u, uint32_t v)
     return u != v && plain_nearer(pos, s, u, v) && plain_dist2(pos[u], pos[v]) <= plain_dist2(pos[v], s);
 }
 
-static inline uint32_t plain_relative(const Vec2 *pos, uint32_t n, Vec2 s, PointFilter sees, const void *user, uint32_t *out)
+static inline uint32_t plain_relative(const Vec2 *pos, uint32_t n, Vec2 s, PointFilter sees, const void *user,
+                                      uint32_t *out)
 {
     uint32_t m = 0;
     for (uint32_t v = 0; v < n; v++) {
@@ -47,8 +54,9 @@ static inline uint32_t plain_nearest(const Vec2 *pos, uint32_t n, Vec2 s, PointF
 
 typedef enum { NO, PERHAPS, YES } Answer;
 
-/* Is v a Delaunay neighbour of s: is there a disc with both on its rim and no other node inside? Its centre is m + t n, with m half
- * way and n across; every other node u allows a half-line of t. PERHAPS when what is left is too short to trust. */
+/* Is v a Delaunay neighbour of s: is there a disc with both on its rim and no other node inside? Its centre is m + t n,
+ * with m half way and n across; every other node u allows a half-line of t. PERHAPS when what is left is too short to
+ * trust. */
 static inline Answer plain_delaunay(const Vec2 *pos, uint32_t n, Vec2 s, uint32_t v, PointFilter sees, const void *user)
 {
     long double px = (long double)pos[v].x - (long double)s.x, py = (long double)pos[v].y - (long double)s.y;

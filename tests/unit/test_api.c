@@ -76,7 +76,8 @@ static void test_params(void)
 static void test_params_file(void)
 {
     VenParams *p = small();
-    char *text = ven_params_text(p), *dir = g_dir_make_tmp("venation-XXXXXX", NULL), *path = g_build_filename(dir, "leaf.ini", NULL);
+    char *text = ven_params_text(p), *dir = g_dir_make_tmp("venation-XXXXXX", NULL),
+         *path = g_build_filename(dir, "leaf.ini", NULL);
     g_assert_true(g_file_set_contents(path, text, -1, NULL));
     GError *error = NULL;
     VenParams *q = ven_params_load(path, &error);
@@ -303,8 +304,11 @@ static void test_write(void)
     GError *error = NULL;
     g_assert_true(ven_write(leaf, dir, "small", &error)); /* makes the folders */
     g_assert_no_error(error);
-    static const char *const file[] = {"small_base_color.png", "small_base_color.exr", "small_height.png", "small_vein_mask.png",
-                                       "small_veins.png", "small.svg", "small.graphml", "small_nodes.csv", "small_edges.csv", "small.json"};
+    static const char *const file[] = {"small_base_color.png", "small_base_color.exr",
+                                       "small_height.png",     "small_vein_mask.png",
+                                       "small_veins.png",      "small.svg",
+                                       "small.graphml",        "small_nodes.csv",
+                                       "small_edges.csv",      "small.json"};
     for (gsize i = 0; i < G_N_ELEMENTS(file); i++)
         has(dir, file[i]);
     char *path = g_build_filename(dir, "small.json", NULL), *text, *want = ven_leaf_record(leaf);

@@ -22,7 +22,8 @@ static void near(double got, double want, double relative)
 static void test_log2(void)
 {
     for (uint64_t i = 0; i < 20000; i++) {
-        double wide = exp2(uniform(i, -1022, 1023.9)), one = 1.0 + uniform(i, -0.5, 1) * exp2(uniform(i + 20000, -50, 0));
+        double wide = exp2(uniform(i, -1022, 1023.9)),
+               one = 1.0 + uniform(i, -0.5, 1) * exp2(uniform(i + 20000, -50, 0));
         near(dmath_log2(wide), (double)log2l((long double)wide), 1e-14);
         near(dmath_log2(one), (double)log2l((long double)one), 1e-14);
     }

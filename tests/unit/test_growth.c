@@ -157,12 +157,16 @@ static long double rate(const double *r, uint32_t n, long double y)
     for (uint32_t i = 0; i + 1 < n; i++) {
         long double y0 = (long double)r[2 * i], y1 = (long double)r[2 * i + 2];
         if (y >= y0 && y <= y1)
-            return (long double)r[2 * i + 1] + ((long double)r[2 * i + 3] - (long double)r[2 * i + 1]) * (y - y0) / (y1 - y0);
+            return (long double)r[2 * i + 1] +
+                   ((long double)r[2 * i + 3] - (long double)r[2 * i + 1]) * (y - y0) / (y1 - y0);
     }
     return (long double)(y < (long double)r[0] ? r[1] : r[2 * n - 1]);
 }
 
-static long double stretch(const double *r, uint32_t n, long double y, uint32_t t) { return powl(1 + rate(r, n, y), (long double)t); }
+static long double stretch(const double *r, uint32_t n, long double y, uint32_t t)
+{
+    return powl(1 + rate(r, n, y), (long double)t);
+}
 
 /* Simpson's rule on one piece. */
 static long double simpson(const double *r, uint32_t n, uint32_t t, long double a, long double b)
@@ -170,7 +174,8 @@ static long double simpson(const double *r, uint32_t n, uint32_t t, long double 
     enum { PARTS = 200 };
     long double h = (b - a) / PARTS, sum = 0;
     for (int i = 0; i < PARTS; i++)
-        sum += stretch(r, n, a + i * h, t) + 4 * stretch(r, n, a + (i + 0.5L) * h, t) + stretch(r, n, a + (i + 1) * h, t);
+        sum +=
+            stretch(r, n, a + i * h, t) + 4 * stretch(r, n, a + (i + 0.5L) * h, t) + stretch(r, n, a + (i + 1) * h, t);
     return sum * h / 6;
 }
 
@@ -293,7 +298,8 @@ static void refused(const Polygon *leaf, GrowthDef def, const char *word)
 
 static void test_errors(void)
 {
-    static const double backwards[] = {0.5, 0.1, 0.2, 0.1}, twice[] = {0.5, 0.1, 0.5, 0.2}, gone[] = {0, -1}, wild[] = {0, 11};
+    static const double backwards[] = {0.5, 0.1, 0.2, 0.1}, twice[] = {0.5, 0.1, 0.5, 0.2}, gone[] = {0, -1},
+                        wild[] = {0, 11};
     static const double fine[] = {0, 0};
     Polygon *leaf = leaf_outline();
     GrowthDef d = growth_def_default();

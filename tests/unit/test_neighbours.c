@@ -1,4 +1,5 @@
-/* Neighbourhoods against plain searches written from the definitions, and the three indices against scans of all points. */
+/* Neighbourhoods against plain searches written from the definitions, and the three indices against scans of all
+ * points. */
 #include <glib.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,10 @@ static double roll(Dice *d)
     return u[0];
 }
 
-static uint32_t pick(Dice *d, uint32_t n) { return (uint32_t)(roll(d) * n); }
+static uint32_t pick(Dice *d, uint32_t n)
+{
+    return (uint32_t)(roll(d) * n);
+}
 
 typedef enum {
     SET_RANDOM,
@@ -46,12 +50,17 @@ static const Box2 field_box = {-40, -38, 40, 41};
 /* Lattice points at distance 65 from the origin, scaled to 13: as cocircular as points can be. */
 static Vec2 on_circle(uint32_t i)
 {
-    static const int at[9][2] = {{65, 0}, {63, 16}, {60, 25}, {56, 33}, {52, 39}, {39, 52}, {33, 56}, {25, 60}, {16, 63}};
+    static const int at[9][2] = {{65, 0},  {63, 16}, {60, 25}, {56, 33}, {52, 39},
+                                 {39, 52}, {33, 56}, {25, 60}, {16, 63}};
     double x = at[i % 9][0] / 5.0, y = at[i % 9][1] / 5.0;
-    return (i / 9) % 4 == 0 ? vec2(x, y) : (i / 9) % 4 == 1 ? vec2(-y, x) : (i / 9) % 4 == 2 ? vec2(-x, -y) : vec2(y, -x);
+    return (i / 9) % 4 == 0   ? vec2(x, y)
+           : (i / 9) % 4 == 1 ? vec2(-y, x)
+           : (i / 9) % 4 == 2 ? vec2(-x, -y)
+                              : vec2(y, -x);
 }
 
-/* A centre of a random square of the quadtree over field_box, by the tree's own arithmetic: the worst place for its pruning. */
+/* A centre of a random square of the quadtree over field_box, by the tree's own arithmetic: the worst place for its
+ * pruning. */
 static Vec2 on_border(Dice *d)
 {
     Quadtree t;
@@ -110,7 +119,8 @@ static Vec2 set_source(SetKind kind, uint32_t k, const Vec2 *pos, uint32_t n, Di
 {
     switch (k % 5) {
     case 0:
-        return kind == SET_CIRCLE || kind == SET_NEARLY_CIRCLE ? vec2(0, 0) : vec2(pick(d, 12) - 6.0, pick(d, 12) - 6.0);
+        return kind == SET_CIRCLE || kind == SET_NEARLY_CIRCLE ? vec2(0, 0)
+                                                               : vec2(pick(d, 12) - 6.0, pick(d, 12) - 6.0);
     case 1:
         return kind == SET_TREE_BORDERS ? on_border(d) : vec2(pick(d, 12) - 5.5, pick(d, 12) - 5.5);
     case 2:
@@ -137,8 +147,9 @@ static bool seen(const void *user, uint32_t i)
 
 /* ---- comparison ---- */
 
-static const char *const set_name[SET_COUNT] = {"random", "clusters", "grid", "hexagons", "circle", "coincident", "row", "diagonal",
-                                                "nearly grid", "nearly circle", "one side", "tree borders", "walk"};
+static const char *const set_name[SET_COUNT] = {
+    "random",   "clusters",    "grid",          "hexagons", "circle",       "coincident", "row",
+    "diagonal", "nearly grid", "nearly circle", "one side", "tree borders", "walk"};
 
 static int by_index(const void *a, const void *b)
 {
@@ -167,11 +178,15 @@ typedef struct {
     Boxtree fresh;
 } Case;
 
-static Field field_of(const Case *c) { return (Field){c->pos, &c->tree, field_box, c->sight.rule ? seen : NULL, &c->sight}; }
+static Field field_of(const Case *c)
+{
+    return (Field){c->pos, &c->tree, field_box, c->sight.rule ? seen : NULL, &c->sight};
+}
 
 static void fail_at(const Case *c, const Hood *h, const char *what)
 {
-    g_error("%s: %s, sight %d, %u nodes, source at %.17g,%.17g", what, set_name[c->kind], c->sight.rule, c->n, h->s.x, h->s.y);
+    g_error("%s: %s, sight %d, %u nodes, source at %.17g,%.17g", what, set_name[c->kind], c->sight.rule, c->n, h->s.x,
+            h->s.y);
 }
 
 static void check_relative(const Case *c, const Hood *h, const char *what)
@@ -292,7 +307,8 @@ static void test_sets(gconstpointer data)
     uint32_t sure = 0;
     for (uint32_t k = 0; k < G_N_ELEMENTS(batch); k++)
         for (int rule = 0; rule < 3; rule++)
-            check_set(kind, batch[k] == 1 ? 40 : 130, k == 1 ? 1 : 10, batch[k], rule, 100 * (uint64_t)kind + 10 * k + (uint64_t)rule, &sure);
+            check_set(kind, batch[k] == 1 ? 40 : 130, k == 1 ? 1 : 10, batch[k], rule,
+                      100 * (uint64_t)kind + 10 * k + (uint64_t)rule, &sure);
     check_set(kind, 60, 5, 20, 3, 1, &sure);
     if (kind != SET_COINCIDENT)
         g_assert_cmpuint(sure, >, 500); /* most cases are no borderline */
@@ -304,7 +320,8 @@ static void test_many(void)
     uint32_t sure = 0;
     for (uint64_t seed = 0; seed < 400; seed++)
         for (uint32_t kind = 0; kind < SET_COUNT; kind++)
-            check_set((SetKind)kind, 14, 4, 1 + (uint32_t)(seed % 4), (int)(seed % 3), 5000 + seed * SET_COUNT + kind, &sure);
+            check_set((SetKind)kind, 14, 4, 1 + (uint32_t)(seed % 4), (int)(seed % 3), 5000 + seed * SET_COUNT + kind,
+                      &sure);
 }
 
 /* What eq. 2 says of a few nodes, by hand. */
@@ -314,13 +331,13 @@ static void test_by_hand(void)
         Vec2 node[4];
         uint32_t n, want; /* mask */
     } hand[] = {
-        {{{1, 0}}, 1, 1},                           /* one node */
-        {{{1, 0}, {2, 0}}, 2, 1},                   /* behind it another */
-        {{{1, 0}, {-2, 0}}, 2, 3},                  /* opposite */
+        {{{1, 0}}, 1, 1},                            /* one node */
+        {{{1, 0}, {2, 0}}, 2, 1},                    /* behind it another */
+        {{{1, 0}, {-2, 0}}, 2, 3},                   /* opposite */
         {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}, 4, 15}, /* a cross */
-        {{{2, 0}, {1.5, 1.5}}, 2, 1},               /* 45° apart */
-        {{{3, 0}, {0.5, 3}}, 2, 3},                 /* more than 60° apart */
-        {{{5, 5}, {4, 5}, {5, 4}}, 3, 2},           /* a tie: the first of the two nearest, and it shuts out the rest */
+        {{{2, 0}, {1.5, 1.5}}, 2, 1},                /* 45° apart */
+        {{{3, 0}, {0.5, 3}}, 2, 3},                  /* more than 60° apart */
+        {{{5, 5}, {4, 5}, {5, 4}}, 3, 2}, /* a tie: the first of the two nearest, and it shuts out the rest */
     };
     for (uint32_t k = 0; k < G_N_ELEMENTS(hand); k++) {
         Quadtree t;
@@ -416,7 +433,8 @@ static void test_zone_holds(void)
     g_assert_cmpuint(outside, >, 300 * 60 / 10); /* zones are no excuse: they leave much out */
 }
 
-/* Nodes outside the zone that the hood has by then need not be shown to it. A zone is no part of the one before: it may grow. */
+/* Nodes outside the zone that the hood has by then need not be shown to it. A zone is no part of the one before: it may
+ * grow. */
 static void test_zone_skips(void)
 {
     uint32_t skipped = 0;
@@ -477,7 +495,8 @@ static void test_quadtree(void)
                     want = NO_POINT;
                 uint32_t got = quadtree_nearest(&t, p, bound, sight.rule ? seen : NULL, &sight, &d2);
                 if (got != want)
-                    g_error("quadtree_nearest: %s, %u nodes, from %.17g,%.17g: %u instead of %u", set_name[kind], i + 1, p.x, p.y, got, want);
+                    g_error("quadtree_nearest: %s, %u nodes, from %.17g,%.17g: %u instead of %u", set_name[kind], i + 1,
+                            p.x, p.y, got, want);
                 g_assert_cmpfloat(d2, ==, want == NO_POINT ? -1.0 : plain_dist2(pos[want], p));
                 bool within = false;
                 for (uint32_t k = 0; k <= i; k++)
@@ -596,7 +615,8 @@ static void test_zones(void)
             }
             for (uint32_t i = 0; i < m; i++) {
                 bool corner = n && i % 3 == 0; /* exactly on a zone's edge */
-                point[i] = corner ? vec2(zone[i % n].x0, zone[i % n].y1) : vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
+                point[i] =
+                    corner ? vec2(zone[i % n].x0, zone[i % n].y1) : vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
                 item[i] = i;
             }
             Boxtree b = {0};

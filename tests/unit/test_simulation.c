@@ -23,7 +23,8 @@ static Polygon *ovate(void)
 /* Five lobes and sinuses so deep that sources of one lobe see veins of another. */
 static Polygon *lobed(void)
 {
-    static const Vec2 right[] = {{0, 0}, {0.15, 0.05}, {0.55, 0.10}, {0.60, 0.25}, {0.12, 0.25}, {0.55, 0.65}, {0.40, 0.75}, {0.08, 0.40}, {0, 1}};
+    static const Vec2 right[] = {{0, 0},       {0.15, 0.05}, {0.55, 0.10}, {0.60, 0.25}, {0.12, 0.25},
+                                 {0.55, 0.65}, {0.40, 0.75}, {0.08, 0.40}, {0, 1}};
     enum { N = G_N_ELEMENTS(right) };
     Vec2 v[2 * N - 2];
     for (uint32_t i = 0; i < N; i++) {
@@ -155,7 +156,8 @@ static void check_births(const Simulation *s, const Memory *m)
     }
 }
 
-/* New sources keep their distances to the sources and nodes that were there before and to each other, and lie in the blade. */
+/* New sources keep their distances to the sources and nodes that were there before and to each other, and lie in the
+ * blade. */
 static void check_placement(const Simulation *s, const Memory *m)
 {
     if (s->def.placement == PLACEMENT_LIST)
@@ -199,7 +201,8 @@ static void remember(const Simulation *s, Memory *m)
     m->n_sources = 0;
     for (uint32_t k = 0; k < s->n_sources; k++)
         if (source_is_alive(s, k))
-            m->source[m->n_sources++] = s->blade->moving ? s->source[k].material : blade_material(s->blade, s->place[k]);
+            m->source[m->n_sources++] =
+                s->blade->moving ? s->source[k].material : blade_material(s->blade, s->place[k]);
     m->nodes = s->veins.n;
 }
 
@@ -266,7 +269,8 @@ static uint32_t components(const Network *net)
 
 static void check_murray(const Network *net)
 {
-    double *in = g_new0(double, net->n_nodes), *out = g_new0(double, net->n_nodes), *share = g_new0(double, net->n_nodes);
+    double *in = g_new0(double, net->n_nodes), *out = g_new0(double, net->n_nodes),
+           *share = g_new0(double, net->n_nodes);
     uint32_t *parents = g_new0(uint32_t, net->n_nodes);
     for (uint32_t e = 0; e < net->n_edges; e++) {
         in[net->head[e]] += net->flow[e];
@@ -363,8 +367,8 @@ static uint32_t counterpart(const Network *net, uint32_t v, const Network *other
 static bool has_edge(const Network *net, uint32_t a, uint32_t b, uint32_t birth, uint8_t kind)
 {
     for (uint32_t e = 0; e < net->n_edges; e++)
-        if (((net->tail[e] == a && net->head[e] == b) || (net->tail[e] == b && net->head[e] == a)) && net->birth[e] == birth &&
-            net->kind[e] == kind)
+        if (((net->tail[e] == a && net->head[e] == b) || (net->tail[e] == b && net->head[e] == a)) &&
+            net->birth[e] == birth && net->kind[e] == kind)
             return true;
     return false;
 }
@@ -453,9 +457,10 @@ static void test_margin(void)
     for (int shape = 0; shape < 2; shape++)
         for (int mode = 0; mode < 4; mode++) {
             if (shape && mode % 2)
-                continue; /* a margin that passes a place, leaves it and comes again: when it comes first is nobody's concern */
-            SimulationDef d = small(leaf[shape], mode % 2 ? GROWTH_MARGINAL : GROWTH_NONE, mode / 2 ? PATTERN_CLOSED : PATTERN_OPEN,
-                                    NEIGHBOURHOOD_RELATIVE);
+                continue; /* a margin that passes a place, leaves it and comes again: when it comes first is nobody's
+                             concern */
+            SimulationDef d = small(leaf[shape], mode % 2 ? GROWTH_MARGINAL : GROWTH_NONE,
+                                    mode / 2 ? PATTERN_CLOSED : PATTERN_OPEN, NEIGHBOURHOOD_RELATIVE);
             d.placement = PLACEMENT_MARGIN;
             d.density = 0.3;
             g_assert_cmpuint(whole_run(&d, shape ? 4.0 : 1.0, NULL), >, 60);
@@ -568,7 +573,8 @@ static void test_large(void)
 
 /* ---- hard ones: each must end by itself ---- */
 
-static SimulationDef listed(const Polygon *leaf, Pattern pattern, Neighbourhood neighbourhood, const ListedSource *list, uint32_t n)
+static SimulationDef listed(const Polygon *leaf, Pattern pattern, Neighbourhood neighbourhood, const ListedSource *list,
+                            uint32_t n)
 {
     SimulationDef d = small(leaf, GROWTH_NONE, pattern, neighbourhood);
     d.growth.initial_length = 45;
@@ -578,11 +584,13 @@ static SimulationDef listed(const Polygon *leaf, Pattern pattern, Neighbourhood 
     return d;
 }
 
-static void in_every_mode(const ListedSource *list, uint32_t n, double kill, const Vec2 *seeds, uint32_t n_seeds, uint64_t given_up)
+static void in_every_mode(const ListedSource *list, uint32_t n, double kill, const Vec2 *seeds, uint32_t n_seeds,
+                          uint64_t given_up)
 {
     Polygon *leaf = ovate();
     for (int mode = 0; mode < 3; mode++) {
-        SimulationDef d = listed(leaf, mode ? PATTERN_CLOSED : PATTERN_OPEN, mode == 2 ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE, list, n);
+        SimulationDef d = listed(leaf, mode ? PATTERN_CLOSED : PATTERN_OPEN,
+                                 mode == 2 ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE, list, n);
         d.kill_distance = kill;
         if (seeds) {
             d.seeds = seeds;
@@ -590,7 +598,8 @@ static void in_every_mode(const ListedSource *list, uint32_t n, double kill, con
         }
         SimulationCounts c;
         whole_run(&d, 1.0, &c);
-        g_test_message("mode %d: %u nodes in %u steps, %" G_GUINT64_FORMAT " given up", mode, c.nodes, c.step, (guint64)c.given_up);
+        g_test_message("mode %d: %u nodes in %u steps, %" G_GUINT64_FORMAT " given up", mode, c.nodes, c.step,
+                       (guint64)c.given_up);
         g_assert_cmpuint(c.placed, ==, n);
         g_assert_cmpuint(c.given_up, <=, given_up);
     }
@@ -601,7 +610,8 @@ static void in_every_mode(const ListedSource *list, uint32_t n, double kill, con
 static void test_opposite(void)
 {
     static const Vec2 middle = {0, 0.4};
-    const ListedSource two[] = {{{-6, 18}, 0}, {{6, 18}, 0}}, four[] = {{{-6, 18}, 0}, {{6, 18}, 0}, {{0, 12}, 0}, {{0, 24}, 0}};
+    const ListedSource two[] = {{{-6, 18}, 0}, {{6, 18}, 0}},
+                       four[] = {{{-6, 18}, 0}, {{6, 18}, 0}, {{0, 12}, 0}, {{0, 24}, 0}};
     in_every_mode(two, 2, 1, &middle, 1, 0);
     in_every_mode(four, 4, 1, &middle, 1, 0);
 }
@@ -616,12 +626,14 @@ static void test_coincident(void)
 static void test_on_seed(void)
 {
     static const Vec2 seeds[] = {{0, 0.25}, {0.125, 0.5}};
-    const ListedSource on[] = {{{0, 11.25}, 0}, {{5.625, 22.5}, 0}}, more[] = {{{0, 11.25}, 0}, {{2, 30}, 0}, {{-4, 20}, 0}};
+    const ListedSource on[] = {{{0, 11.25}, 0}, {{5.625, 22.5}, 0}},
+                       more[] = {{{0, 11.25}, 0}, {{2, 30}, 0}, {{-4, 20}, 0}};
     in_every_mode(on, 2, 1, seeds, 2, 0);
     in_every_mode(more, 3, 1, seeds, 2, 0);
 }
 
-/* A vein overshoots sources that it can only reach within a twentieth of its step; the run gives up what it can't reach, and ends. */
+/* A vein overshoots sources that it can only reach within a twentieth of its step; the run gives up what it can't
+ * reach, and ends. */
 static void test_tiny_kill(void)
 {
     Polygon *leaf = ovate();
@@ -639,13 +651,15 @@ static void test_tiny_kill(void)
     polygon_free(leaf);
 }
 
-/* With no kill distance nothing is ever reached, not even by a node on the source's place; the run must end all the same. */
+/* With no kill distance nothing is ever reached, not even by a node on the source's place; the run must end all the
+ * same. */
 static void test_no_kill(void)
 {
     const ListedSource on[] = {{{0, 0}, 0}, {{0, 9}, 0}, {{4, 20}, 0}};
     Polygon *leaf = ovate();
     for (int mode = 0; mode < 3; mode++) {
-        SimulationDef d = listed(leaf, mode ? PATTERN_CLOSED : PATTERN_OPEN, mode == 2 ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE, on, 3);
+        SimulationDef d = listed(leaf, mode ? PATTERN_CLOSED : PATTERN_OPEN,
+                                 mode == 2 ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE, on, 3);
         d.kill_distance = 0;
         Simulation *s = start(&d);
         while (simulation_step(s))
@@ -655,7 +669,8 @@ static void test_no_kill(void)
     polygon_free(leaf);
 }
 
-/* Veins that overshoot the margin stay within a segment of it, and in growing tissue are carried along with it, not out of the field. */
+/* Veins that overshoot the margin stay within a segment of it, and in growing tissue are carried along with it, not out
+ * of the field. */
 static void test_overshoot(void)
 {
     static const double fast[] = {0, 0.08, 1, 0.08};
@@ -696,7 +711,8 @@ static void test_few_darts(void)
     polygon_free(leaf);
 }
 
-/* The paper's open rule leaves about 4 % of static sources unreached, because a node grows the same child again and again. */
+/* The paper's open rule leaves about 4 % of static sources unreached, because a node grows the same child again and
+ * again. */
 static void test_static(void)
 {
     for (int mode = 0; mode < 2; mode++) {

@@ -41,8 +41,8 @@ static Network *network(uint32_t nodes, const Link *link, uint32_t edges)
  *  5 - 3   2 - ...   0-1-2-3-4 is the main vein, 5 leaves it at 3, 6 and 7 leave at 2 */
 static void test_pinnate(void)
 {
-    const Link link[] = {{0, 1, EDGE_VEIN}, {1, 2, EDGE_VEIN}, {2, 3, EDGE_VEIN}, {3, 4, EDGE_VEIN}, {3, 5, EDGE_VEIN},
-                         {2, 6, EDGE_VEIN}, {6, 7, EDGE_VEIN}, {6, 8, EDGE_VEIN}};
+    const Link link[] = {{0, 1, EDGE_VEIN}, {1, 2, EDGE_VEIN}, {2, 3, EDGE_VEIN}, {3, 4, EDGE_VEIN},
+                         {3, 5, EDGE_VEIN}, {2, 6, EDGE_VEIN}, {6, 7, EDGE_VEIN}, {6, 8, EDGE_VEIN}};
     const double flow[] = {4, 4, 2, 1, 1, 2, 1, 1};
     const uint8_t order[] = {1, 1, 1, 1, 2, 2, 2, 3};
     Network *net = network(9, link, 8);
@@ -55,7 +55,8 @@ static void test_pinnate(void)
         g_assert_cmpuint(net->order[e], ==, order[e]);
     }
     g_assert_cmpuint(net->n_veins, ==, 4);
-    /* ranks: 6 begins at 1.41 of 2 (0.71): no lower rank; 5 begins as wide as what it leaves, 1 of 1.41 of its entry (0.71) */
+    /* ranks: 6 begins at 1.41 of 2 (0.71): no lower rank; 5 begins as wide as what it leaves, 1 of 1.41 of its entry
+     * (0.71) */
     const uint8_t rank[] = {1, 1, 1, 1, 1, 1, 1, 1};
     g_assert_cmpmem(net->rank, 8, rank, 8);
     def.rank_ratio = 0.8;
@@ -84,7 +85,7 @@ static void test_exponent(void)
 /* A loop: 3 has two parents, which share what leaves it; 4 is an end that two veins reach, and counts twice. */
 static void test_loop(void)
 {
-    const Link link[] = {{0, 1, EDGE_VEIN}, {0, 2, EDGE_VEIN}, {1, 3, EDGE_VEIN}, {3, 4, EDGE_VEIN},
+    const Link link[] = {{0, 1, EDGE_VEIN}, {0, 2, EDGE_VEIN},        {1, 3, EDGE_VEIN},       {3, 4, EDGE_VEIN},
                          {3, 5, EDGE_VEIN}, {2, 3, EDGE_ANASTOMOSIS}, {2, 4, EDGE_ANASTOMOSIS}};
     const double flow[] = {1, 2, 1, 1, 1, 1, 1};
     Network *net = network(6, link, 7);
@@ -120,20 +121,20 @@ static void test_primaries(void)
 /* Extra width for veinlets that are not modelled goes to primaries and secondaries at each node. */
 static void test_thickening(void)
 {
-    const Link link[] = {{0, 1, EDGE_VEIN}, {1, 2, EDGE_VEIN}, {2, 3, EDGE_VEIN}, {2, 4, EDGE_VEIN}, {4, 5, EDGE_VEIN}, {4, 6, EDGE_VEIN},
-                         {3, 7, EDGE_VEIN}, {3, 8, EDGE_VEIN}, {3, 9, EDGE_VEIN}};
+    const Link link[] = {{0, 1, EDGE_VEIN}, {1, 2, EDGE_VEIN}, {2, 3, EDGE_VEIN}, {2, 4, EDGE_VEIN}, {4, 5, EDGE_VEIN},
+                         {4, 6, EDGE_VEIN}, {3, 7, EDGE_VEIN}, {3, 8, EDGE_VEIN}, {3, 9, EDGE_VEIN}};
     Network *net = network(10, link, 9);
     net->node[2] = vec2(0, 40);
     WidthDef def = {.exponent = 2, .minimum = 1, .thickening = 0.25, .rank_ratio = 0.6};
     network_assign_widths(net, &def);
     g_assert_cmpuint(net->order[3], ==, 2);
     g_assert_cmpuint(net->order[5], ==, 3);
-    near(net->flow[5], 1);          /* tertiary: none */
-    near(net->flow[4], 1.25);       /* secondary's end */
-    near(net->flow[3], 2.5);        /* 1.25 + 1 + 0.25 */
-    near(net->flow[6], 1.25);       /* the main vein's end */
-    near(net->flow[2], 4);          /* that, two secondaries of 1.25, and 0.25 */
-    near(net->flow[1], 6.75);       /* 4 + 2.5 + 0.25 */
+    near(net->flow[5], 1);    /* tertiary: none */
+    near(net->flow[4], 1.25); /* secondary's end */
+    near(net->flow[3], 2.5);  /* 1.25 + 1 + 0.25 */
+    near(net->flow[6], 1.25); /* the main vein's end */
+    near(net->flow[2], 4);    /* that, two secondaries of 1.25, and 0.25 */
+    near(net->flow[1], 6.75); /* 4 + 2.5 + 0.25 */
     network_free(net);
 }
 
@@ -166,7 +167,8 @@ static Network *random_network(uint64_t seed, uint32_t nodes, uint32_t seeds, ui
     return net;
 }
 
-/* Flow by sending every end's veinlets up on their own: at each node what arrives is shared among the veins that enter it. */
+/* Flow by sending every end's veinlets up on their own: at each node what arrives is shared among the veins that enter
+ * it. */
 static double *plain_flow(const Network *net)
 {
     double *flow = g_new0(double, net->n_edges), *mass = g_new0(double, net->n_nodes);
@@ -284,7 +286,8 @@ static void check_anastomoses(const Network *net)
 static void test_random(void)
 {
     for (uint64_t seed = 0; seed < 40; seed++) {
-        Network *net = random_network(seed, 40 + 5 * (uint32_t)seed, 1 + (uint32_t)(seed % 4), (uint32_t)(seed % 5) * 8);
+        Network *net =
+            random_network(seed, 40 + 5 * (uint32_t)seed, 1 + (uint32_t)(seed % 4), (uint32_t)(seed % 5) * 8);
         WidthDef def = {.exponent = 1.5 + 0.1 * (double)seed, .minimum = 0.3, .thickening = 0, .rank_ratio = 0.6};
         network_assign_widths(net, &def);
         double *want = plain_flow(net);
