@@ -5,49 +5,55 @@
 static const struct {
     const char *id, *domain, *name, *type;
 } keys[] = {
-    {"x", "node", "x", "double"},    {"y", "node", "y", "double"},      {"nb", "node", "birth", "int"},
+    {"x", "node", "x", "double"},    {"y", "node", "y", "double"},      {"t", "node", "birth", "int"},
     {"k", "edge", "kind", "string"}, {"o", "edge", "order", "int"},     {"r", "edge", "rank", "int"},
     {"v", "edge", "vein", "int"},    {"w", "edge", "width", "double"},  {"f", "edge", "flow", "double"},
     {"b", "edge", "birth", "int"},   {"l", "edge", "length", "double"},
 };
 
-static void put_number(GString *s, const char *key, double value)
-{
-    g_string_append(s, "<data key=\"");
-    g_string_append(s, key);
-    g_string_append(s, "\">");
-    export_number(s, value);
-    g_string_append(s, "</data>");
-}
+/* Strings of known length: a leaf may have a million edges. */
+#define PUT(s, text) g_string_append_len(s, text, sizeof(text) - 1)
+#define NEXT(key) "</data><data key=\"" key "\">"
 
 static void put_node(const Network *net, uint32_t i, GString *s)
 {
-    g_string_append(s, "<node id=\"n");
+    PUT(s, "<node id=\"");
     sink_uint(s, i);
-    g_string_append(s, "\">");
-    put_number(s, "x", net->node[i].x);
-    put_number(s, "y", net->node[i].y);
-    put_number(s, "nb", net->node_birth[i]);
-    g_string_append(s, "</node>\n");
+    PUT(s, "\"><data key=\"x\">");
+    sink_millionths(s, net->node[i].x);
+    PUT(s, NEXT("y"));
+    sink_millionths(s, net->node[i].y);
+    PUT(s, NEXT("t"));
+    sink_uint(s, net->node_birth[i]);
+    PUT(s, "</data></node>\n");
 }
 
 static void put_edge(const Network *net, uint32_t e, GString *s)
 {
-    g_string_append(s, "<edge source=\"n");
+    PUT(s, "<edge source=\"");
     sink_uint(s, net->tail[e]);
-    g_string_append(s, "\" target=\"n");
+    PUT(s, "\" target=\"");
     sink_uint(s, net->head[e]);
-    g_string_append(s, "\"><data key=\"k\">");
-    g_string_append(s, net->kind[e] == EDGE_ANASTOMOSIS ? "anastomosis" : "vein");
-    g_string_append(s, "</data>");
-    put_number(s, "o", net->order[e]);
-    put_number(s, "r", net->rank[e]);
-    put_number(s, "v", net->vein[e]);
-    put_number(s, "w", net->width[e]);
-    put_number(s, "f", net->flow[e]);
-    put_number(s, "b", net->birth[e]);
-    put_number(s, "l", vec_dist(net->node[net->tail[e]], net->node[net->head[e]]));
-    g_string_append(s, "</edge>\n");
+    PUT(s, "\"><data key=\"k\">");
+    if (net->kind[e] == EDGE_ANASTOMOSIS)
+        PUT(s, "anastomosis");
+    else
+        PUT(s, "vein");
+    PUT(s, NEXT("o"));
+    sink_uint(s, net->order[e]);
+    PUT(s, NEXT("r"));
+    sink_uint(s, net->rank[e]);
+    PUT(s, NEXT("v"));
+    sink_uint(s, net->vein[e]);
+    PUT(s, NEXT("w"));
+    sink_size(s, net->width[e]);
+    PUT(s, NEXT("f"));
+    sink_size(s, net->flow[e]);
+    PUT(s, NEXT("b"));
+    sink_uint(s, net->birth[e]);
+    PUT(s, NEXT("l"));
+    sink_size(s, vec_dist(net->node[net->tail[e]], net->node[net->head[e]]));
+    PUT(s, "</data></edge>\n");
 }
 
 gboolean export_graphml(const Network *net, const char *path, GError **error)

@@ -4,7 +4,10 @@
 #include <fcntl.h>
 #include <glib/gstdio.h>
 #include <math.h>
+#include <stdbool.h>
 #include <unistd.h>
+
+#include "export/export.h"
 
 #define DRAIN_AT (1u << 20) /* bytes */
 
@@ -81,15 +84,70 @@ gboolean sink_close(Sink *s, GError **error)
     return code == 0;
 }
 
-void sink_uint(GString *s, uint64_t value)
+/* Writes the digits before `end`; returns where they begin. */
+static char *digits(char *end, uint64_t value)
 {
-    char digits[20];
-    int n = 0;
     do {
-        digits[sizeof digits - ++n] = (char)('0' + value % 10);
+        *--end = (char)('0' + value % 10);
         value /= 10;
     } while (value > 0);
-    g_string_append_len(s, digits + sizeof digits - n, n);
+    return end;
+}
+
+void sink_uint(GString *s, uint64_t value)
+{
+    char text[20], *end = text + sizeof text, *at = digits(end, value);
+    g_string_append_len(s, at, end - at);
+}
+
+/* f * 1e6 for 0 <= f < 1, rounded half to even. f = (whole + rest) / 2^53; the product is whole * 1e6, 73 bits in two
+ * parts, and rest * 1e6, which is exact as rest is 0 or, since f is not below 2^-22, has 22 bits. */
+static uint64_t millionths(double f)
+{
+    if (f < 0x1p-22)
+        return 0; /* and so below half a millionth */
+    double scaled = f * 0x1p53, below = floor(scaled), rest = (scaled - below) * 1e6;
+    uint64_t whole = (uint64_t)below, extra = (uint64_t)rest;
+    uint64_t low = (whole & 0xFFFFFFFFu) * 1000000u + extra, high = (whole >> 32) * 1000000u + (low >> 32);
+    uint64_t n = high >> 21, left = (high & 0x1FFFFFu) << 32 | (low & 0xFFFFFFFFu), half = UINT64_C(1) << 52;
+    bool odd = n % 2 != 0, more = rest > (double)extra;
+    return left > half || (left == half && (odd || more)) ? n + 1 : n;
+}
+
+void sink_millionths(GString *s, double value)
+{
+    double size = fabs(value);
+    if (!(size < 1e12)) {
+        export_number(s, value);
+        return;
+    }
+    uint64_t whole = (uint64_t)size, part = millionths(size - (double)whole);
+    if (part == 1000000) {
+        whole++;
+        part = 0;
+    }
+    char text[24], *end = text + sizeof text, *at = end;
+    if (part > 0) {
+        int places = 6;
+        for (; part % 10 == 0; part /= 10)
+            places--;
+        for (; places > 0; places--, part /= 10)
+            *--at = (char)('0' + part % 10);
+        *--at = '.';
+    }
+    bool negative = value < 0.0 && (whole > 0 || at < end);
+    at = digits(at, whole);
+    if (negative)
+        *--at = '-';
+    g_string_append_len(s, at, end - at);
+}
+
+void sink_size(GString *s, double value)
+{
+    if (fabs(value) < 0.01 && value != 0.0)
+        export_number(s, value);
+    else
+        sink_millionths(s, value);
 }
 
 int64_t sink_round_hundredths(double value)

@@ -27,4 +27,11 @@ void sink_uint(GString *s, uint64_t value);
 void sink_hundredths(GString *s, int64_t hundredths);
 int64_t sink_round_hundredths(double value);
 
+/* A number rounded to millionths, half to even and exactly, without needless zeros ("-0.25", "3.000001", "0" for what
+ * rounds to it); beyond 1e12 and for NaN and infinity as export_number. */
+void sink_millionths(GString *s, double value);
+
+/* The same for sizes that may be tiny: below 0.01 as many digits as read back exactly. */
+void sink_size(GString *s, double value);
+
 #endif

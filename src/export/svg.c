@@ -1,4 +1,5 @@
-/* SVG of a leaf for Inkscape and other drawing programs: a layer an order, a path a vein. */
+/* SVG of a leaf for Inkscape and other drawing programs: a layer an order, a path a vein, cut off at the margin. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "export/export.h"
@@ -8,6 +9,10 @@
 #define WIDTH_STEP                                                                                                     \
     1.03 /* a vein is one path as long as its widest and narrowest edges differ by less: not seen by eye */
 #define ORDERS 256
+
+/* Of an order with more than CROWD paths, BUNCH veinlets of one width share a path: drawing programs take a time that
+ * grows faster than the number of paths. */
+enum { CROWD = 4096, BUNCH = 64 };
 
 /* Edges order by order, vein by vein, and along each vein from its origin. */
 typedef struct {
@@ -110,44 +115,92 @@ static uint32_t run_length(const Network *net, const uint32_t *e, uint32_t n, do
     return k;
 }
 
+/* To three digits or more, as the eye does not need: so equal widths are many. */
+static double round_width(double width)
+{
+    double unit = 1000.0; /* a power of ten, which is exact up to 1e22 */
+    while (width * unit < 100.0 && unit < 1e15)
+        unit *= 10.0;
+    return floor(width * unit + 0.5) / unit;
+}
+
+/* Edges that make one path. */
+typedef struct {
+    const uint32_t *e;
+    uint32_t n;
+    double width;
+} Run;
+
+/* The wider first, else in their order along the veins. */
+static int by_width(const void *a, const void *b)
+{
+    const Run *r = a, *s = b;
+    return r->width != s->width ? (r->width > s->width ? -1 : 1) : r->e < s->e ? -1 : r->e > s->e;
+}
+
+static Run *collect_runs(const Network *net, const uint32_t *e, uint32_t n, uint32_t *n_runs)
+{
+    Run *runs = g_new(Run, n);
+    *n_runs = 0;
+    for (uint32_t i = 0, k; i < n; i += k) {
+        double width;
+        k = run_length(net, e + i, n - i, &width);
+        runs[(*n_runs)++] = (Run){e + i, k, round_width(width)};
+    }
+    return runs;
+}
+
+/* Veins of an order mostly are veinlets of one width; the group holds that width once for all of them. */
+static double usual_width(const Run *runs, uint32_t n)
+{
+    Run *sorted = g_memdup2(runs, n * sizeof *runs);
+    qsort(sorted, n, sizeof *sorted, by_width);
+    double usual = sorted[0].width;
+    for (uint32_t i = 0, k, most = 0; i < n; i += k) {
+        for (k = 1; i + k < n && sorted[i + k].width == sorted[i].width;)
+            k++;
+        if (k >= most) {
+            most = k;
+            usual = sorted[i].width;
+        }
+    }
+    g_free(sorted);
+    return usual;
+}
+
 static void put_width(GString *s, double width)
 {
     g_string_append(s, " stroke-width=\"");
-    export_number(s, width < 0.1 ? width : floor(width * 1000.0 + 0.5) / 1000.0);
+    export_number(s, width);
     g_string_append_c(s, '"');
 }
 
-static void put_run(const Network *net, const uint32_t *e, uint32_t n, double width, double usual, GString *s)
+/* One path of n runs of equal width. */
+static void put_path(const Network *net, const Run *run, uint32_t n, double usual, GString *s)
 {
     g_string_append(s, "<path");
-    if (width != usual)
-        put_width(s, width);
-    g_string_append(s, " d=\"M");
-    put_point(s, net->node[net->tail[e[0]]]);
-    for (uint32_t i = 0; i < n; i++) {
-        g_string_append_c(s, ' ');
-        put_point(s, net->node[net->head[e[i]]]);
+    if (run->width != usual)
+        put_width(s, run->width);
+    g_string_append(s, " d=\"");
+    for (uint32_t k = 0; k < n; k++) {
+        g_string_append_c(s, 'M');
+        put_point(s, net->node[net->tail[run[k].e[0]]]);
+        for (uint32_t i = 0; i < run[k].n; i++) {
+            g_string_append_c(s, ' ');
+            put_point(s, net->node[net->head[run[k].e[i]]]);
+        }
     }
     g_string_append(s, "\"/>\n");
-}
-
-/* Veins of an order mostly end as veinlets of its least width; the group holds that width once for all of them. */
-static double usual_width(const Network *net, const uint32_t *e, uint32_t n)
-{
-    double w = net->width[e[0]];
-    for (uint32_t i = 1; i < n; i++)
-        w = net->width[e[i]] < w ? net->width[e[i]] : w;
-    return w;
 }
 
 static void put_order(const Network *net, const PaintStyle *style, const Sorted *sorted, unsigned order, Sink *out)
 {
     static const char *const name[] = {"", "primary", "secondary", "tertiary", "quaternary", "quinternary"};
-    const uint32_t *e = sorted->edge + sorted->start[order];
-    uint32_t n = sorted->start[order + 1] - sorted->start[order];
+    uint32_t n = sorted->start[order + 1] - sorted->start[order], n_runs;
     if (n == 0)
         return;
-    double rgb[3], usual = usual_width(net, e, n);
+    Run *runs = collect_runs(net, sorted->edge + sorted->start[order], n, &n_runs);
+    double rgb[3], usual = usual_width(runs, n_runs);
     order_colour(style, order, rgb);
     g_string_append_printf(out->text,
                            "<g id=\"order-%u\" data-order=\"%u\" inkscape:groupmode=\"layer\" "
@@ -159,14 +212,16 @@ static void put_order(const Network *net, const PaintStyle *style, const Sorted 
     g_string_append_c(out->text, '"');
     put_width(out->text, usual);
     g_string_append(out->text, ">\n");
-    for (uint32_t i = 0; i < n;) {
-        double width;
-        uint32_t k = run_length(net, e + i, n - i, &width);
-        put_run(net, e + i, k, width, usual, out->text);
+    if (n_runs > CROWD)
+        qsort(runs, n_runs, sizeof *runs, by_width);
+    for (uint32_t i = 0, k; i < n_runs; i += k) {
+        for (k = 1; n_runs > CROWD && k < BUNCH && i + k < n_runs && runs[i + k].width == runs[i].width;)
+            k++;
+        put_path(net, runs + i, k, usual, out->text);
         sink_drain(out);
-        i += k;
     }
     g_string_append(out->text, "</g>\n");
+    g_free(runs);
 }
 
 static void put_blade(const Polygon *margin, const PaintStyle *style, Sink *out)
@@ -185,7 +240,7 @@ static void put_blade(const Polygon *margin, const PaintStyle *style, Sink *out)
         put_point(out->text, margin->v[i]);
         sink_drain(out);
     }
-    g_string_append(out->text, "Z\"/>\n</g>\n");
+    g_string_append(out->text, "Z\"/>\n</g>\n<clipPath id=\"inside\"><use href=\"#blade\"/></clipPath>\n");
 }
 
 static void put_head(const Network *net, const Frame *frame, const char *title, GString *s)
@@ -218,10 +273,13 @@ gboolean export_svg(const Network *net, const Frame *frame, const PaintStyle *st
         return FALSE;
     put_head(net, frame, title, out->text);
     put_blade(net->margin, style, out);
+    /* veins end at the margin */
+    g_string_append_printf(out->text, "<g id=\"veins\" inkscape:groupmode=\"layer\" inkscape:label=\"Veins\"%s>\n",
+                           net->margin != NULL ? " clip-path=\"url(#inside)\"" : "");
     Sorted sorted = sort_edges(net);
     for (unsigned order = ORDERS; order-- > 0;) /* the primary veins lie on top */
         put_order(net, style, &sorted, order, out);
     g_free(sorted.edge);
-    g_string_append(out->text, "</svg>\n");
+    g_string_append(out->text, "</g>\n</svg>\n");
     return sink_close(out, error);
 }

@@ -1,4 +1,5 @@
-/* Plain CSV tables for spreadsheets, R and pandas; a node's number is its line after the header, from 0. */
+/* Plain CSV tables for spreadsheets, R and pandas; a node's number is its line after the header, from 0. Lengths are
+ * rounded to millionths of a segment. */
 #include "export/export.h"
 #include "export/sink.h"
 
@@ -12,9 +13,9 @@ gboolean export_nodes_csv(const Network *net, const char *path, GError **error)
     for (uint32_t i = 0; i < net->n_nodes; i++) {
         sink_uint(s, i);
         g_string_append_c(s, ',');
-        export_number(s, net->node[i].x);
+        sink_millionths(s, net->node[i].x);
         g_string_append_c(s, ',');
-        export_number(s, net->node[i].y);
+        sink_millionths(s, net->node[i].y);
         g_string_append_c(s, ',');
         sink_uint(s, net->node_birth[i]);
         g_string_append_c(s, '\n');
@@ -35,13 +36,13 @@ static void put_edge(const Network *net, uint32_t e, GString *s)
     g_string_append_c(s, ',');
     sink_uint(s, net->vein[e]);
     g_string_append_c(s, ',');
-    export_number(s, net->width[e]);
+    sink_size(s, net->width[e]);
     g_string_append_c(s, ',');
-    export_number(s, net->flow[e]);
+    sink_size(s, net->flow[e]);
     g_string_append_c(s, ',');
     sink_uint(s, net->birth[e]);
     g_string_append_c(s, ',');
-    export_number(s, vec_dist(net->node[net->tail[e]], net->node[net->head[e]]));
+    sink_size(s, vec_dist(net->node[net->tail[e]], net->node[net->head[e]]));
     g_string_append_c(s, '\n');
 }
 

@@ -28,9 +28,10 @@ static void owner_row(uint32_t y, void *user)
 {
     const Attribute *a = user;
     const uint32_t *owner = a->p->owner + (gsize)y * a->p->width;
+    const float *blade = a->p->net->margin != NULL ? a->p->blade + (gsize)y * a->p->width : NULL;
     float *out = a->plane->px + (gsize)y * a->p->width;
-    for (uint32_t x = 0; x < a->p->width; x++)
-        if ((owner[x] & OWNER_BESIDE) == 0)
+    for (uint32_t x = 0; x < a->p->width; x++) /* veins end at the margin */
+        if ((owner[x] & OWNER_BESIDE) == 0 && (blade == NULL || blade[x] >= 0.5f))
             out[x] = (float)value_at(a, owner[x], x, y);
 }
 
@@ -75,6 +76,8 @@ Plane *paint_attribute(Painter *p, MapId id)
         if (plane->kind == PLANE_DATA)
             plane->high = white(p, id);
         painter_owner(p);
+        if (p->net->margin != NULL)
+            painter_blade(p);
         painter_rows(p, owner_row, &a);
     }
     return plane;

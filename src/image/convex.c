@@ -77,7 +77,7 @@ static void rings_reset(Rings *r)
     r->n = r->n_v = 0;
 }
 
-static void rings_clear(Rings *r)
+void rings_clear(Rings *r)
 {
     g_free(r->v);
     g_free(r->end);
@@ -102,7 +102,7 @@ static double ring_area(const Vec2 *v, uint32_t n)
 /* The part of a polygon where p · normal <= bound. */
 static void clip(const Vec2 *v, uint32_t n, Vec2 normal, double bound, Rings *out)
 {
-    rings_room(out, n + 2);
+    rings_room(out, 2 * n); /* a polygon that is not convex may be cut at every edge */
     uint32_t start = out->n_v;
     Vec2 p = v[n - 1];
     double dp = vec_dot(p, normal) - bound;
@@ -119,6 +119,21 @@ static void clip(const Vec2 *v, uint32_t n, Vec2 normal, double bound, Rings *ou
     rings_close(out);
 }
 
+void ring_within(const Vec2 *v, uint32_t n, Box2 box, Rings *out, Rings *spare)
+{
+    const Vec2 normal[4] = {{-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}, {0.0, 1.0}};
+    const double bound[4] = {-box.x0, -box.y0, box.x1, box.y1};
+    rings_reset(out);
+    rings_copy(out, v, n);
+    for (int i = 0; i < 4 && out->n > 0; i++) {
+        Rings swap = *spare;
+        *spare = *out;
+        *out = swap;
+        rings_reset(out);
+        clip(spare->v, spare->n_v, normal[i], bound[i], out);
+    }
+}
+
 /* ---- a stroke within a pixel ---- */
 
 void union_init(Union *u, const Circle *circle)
@@ -133,6 +148,7 @@ void union_clear(Union *u)
     rings_clear(&u->next);
     rings_clear(&u->ping);
     rings_clear(&u->pong);
+    rings_clear(&u->mask);
     g_free(u->rank);
     g_free(u->size);
 }
@@ -385,4 +401,41 @@ static double square_area(Union *u, uint32_t first, uint32_t last, Vec2 corner, 
 double union_area(Union *u)
 {
     return square_area(u, 0, u->part.n, vec2(0.0, 0.0), 1.0, 0);
+}
+
+/* Area of the union of the parts within a triangle that turns left. */
+static double triangle_area(Union *u, const Vec2 *t)
+{
+    uint32_t n = u->part.n, n_v = u->part.n_v;
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t s = ring_start(&u->part, i);
+        rings_reset(&u->ping);
+        rings_copy(&u->ping, u->part.v + s, u->part.end[i] - s);
+        bool left = u->ping.n > 0;
+        for (int k = 0; k < 3 && left; k++) {
+            Vec2 e = vec_sub(t[(k + 1) % 3], t[k]), outer = vec2(e.y, -e.x);
+            left = cut(u, outer, vec_dot(t[k], outer));
+        }
+        if (left)
+            rings_copy(&u->part, u->ping.v, u->ping.n_v);
+    }
+    double area = square_area(u, n, u->part.n, vec2(0.0, 0.0), 1.0, 0);
+    u->part.n = n;
+    u->part.n_v = n_v;
+    return area;
+}
+
+/* The polygon is a sum of triangles, those that turn right taken away. */
+double union_area_within(Union *u, const Vec2 *v, uint32_t n, Vec2 corner)
+{
+    ring_within(v, n, (Box2){corner.x, corner.y, corner.x + 1.0, corner.y + 1.0}, &u->mask, &u->ping);
+    double sum = 0.0;
+    for (uint32_t i = 1; i + 1 < u->mask.n_v; i++) {
+        Vec2 o = vec_sub(u->mask.v[0], corner), a = vec_sub(u->mask.v[i], corner), b = vec_sub(u->mask.v[i + 1], corner);
+        double turn = vec_cross(vec_sub(a, o), vec_sub(b, o));
+        Vec2 t[3] = {o, turn > 0.0 ? a : b, turn > 0.0 ? b : a};
+        if (fabs(turn) > speck)
+            sum += turn > 0.0 ? triangle_area(u, t) : -triangle_area(u, t);
+    }
+    return fabs(sum);
 }

@@ -27,6 +27,7 @@ typedef struct {
     Rings part;       /* the strokes within the pixel */
     Rings rest, next; /* what is left of one of them */
     Rings ping, pong; /* polygons being cut */
+    Rings mask;       /* the polygon that they are seen through */
     uint32_t *rank;   /* parts by size */
     double *size;
     uint32_t cap;
@@ -50,5 +51,13 @@ void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec
 
 /* Area covered, 0 … 1. About 1e-5 exact. */
 double union_area(Union *u);
+
+/* The same of what lies within a polygon, convex or not, of n points in image coordinates; `corner` is the pixel's. */
+double union_area_within(Union *u, const Vec2 *v, uint32_t n, Vec2 corner);
+
+/* Puts into `out` the part of a polygon, convex or not, within a box: out->n is 0 when there is none. Where it leaves the
+ * box it runs along its sides, so that turns around points within stay what they are. `spare` is scratch. */
+void ring_within(const Vec2 *v, uint32_t n, Box2 box, Rings *out, Rings *spare);
+void rings_clear(Rings *r);
 
 #endif

@@ -21,6 +21,8 @@ typedef struct {
     uint32_t head[TILE * TILE];
     Link *link;
     uint32_t n_links, cap_links;
+    Rings blade, spare; /* the margin within the tile, pixels */
+    bool has_blade;
 } Tile;
 
 static void tile_link(Tile *t, uint32_t pixel, uint32_t stroke)
@@ -64,10 +66,28 @@ static void add_wedge(Union *u, const Stroke *s, Vec2 corner)
         union_add_wedge(u, k->a, k->ra, s->before, k->d, corner);
 }
 
-static float pixel_cover(Tile *t, uint32_t pixel, Vec2 corner)
+static Vec2 to_image(const Painter *p, Vec2 v)
 {
-    if (t->full[pixel])
-        return 1.0f;
+    return vec2((v.x - p->frame.corner.x) * p->frame.scale, (p->frame.corner.y - v.y) * p->frame.scale);
+}
+
+static void tile_blade(Tile *t, TileBox box)
+{
+    const Polygon *m = t->p->net->margin;
+    Vec2 *v = g_new(Vec2, m->n);
+    for (uint32_t i = 0; i < m->n; i++)
+        v[i] = to_image(t->p, m->v[i]);
+    ring_within(v, m->n, (Box2){box.x0, box.y0, box.x1, box.y1}, &t->blade, &t->spare);
+    t->has_blade = true;
+    g_free(v);
+}
+
+/* Veins end at the margin: what a first node on it or a wide vein in a narrow base has beyond is of the petiole. */
+static float pixel_cover(Tile *t, TileBox box, uint32_t pixel, Vec2 corner)
+{
+    float blade = t->p->net->margin != NULL ? t->p->blade[(gsize)corner.y * t->p->width + (gsize)corner.x] : 1.0f;
+    if (blade == 0.0f || t->full[pixel])
+        return blade;
     if (t->head[pixel] == NONE)
         return 0.0f;
     union_reset(&t->area);
@@ -77,7 +97,12 @@ static float pixel_cover(Tile *t, uint32_t pixel, Vec2 corner)
         if ((s->cut & CUT_A) != 0)
             add_wedge(&t->area, s, corner);
     }
-    return (float)MIN(union_area(&t->area), 1.0);
+    if (blade == 1.0f)
+        return (float)MIN(union_area(&t->area), 1.0);
+    if (!t->has_blade)
+        tile_blade(t, box);
+    double area = union_area_within(&t->area, t->blade.v, t->blade.n_v, corner);
+    return (float)MIN(area, (double)blade);
 }
 
 static void cover_tiles(uint32_t first, uint32_t last, void *user)
@@ -94,13 +119,16 @@ static void cover_tiles(uint32_t first, uint32_t last, void *user)
         memset(t->full, 0, sizeof t->full);
         memset(t->head, 0xFF, sizeof t->head);
         t->n_links = 0;
+        t->has_blade = false;
         for (uint32_t i = from; i < to; i++)
             tile_enter(t, box, p->bins.item[i]);
         for (uint32_t y = box.y0; y < box.y1; y++)
             for (uint32_t x = box.x0; x < box.x1; x++)
-                p->cover[(gsize)y * p->width + x] = pixel_cover(t, (y - box.y0) * TILE + x - box.x0, vec2(x, y));
+                p->cover[(gsize)y * p->width + x] = pixel_cover(t, box, (y - box.y0) * TILE + x - box.x0, vec2(x, y));
     }
     union_clear(&t->area);
+    rings_clear(&t->blade);
+    rings_clear(&t->spare);
     g_free(t->link);
     g_free(t);
 }
@@ -109,6 +137,8 @@ const float *painter_cover(Painter *p)
 {
     if (p->cover == NULL) {
         painter_strokes(p);
+        if (p->net->margin != NULL)
+            painter_blade(p);
         p->cover = g_new0(float, (gsize)p->width * p->rows);
         parallel_for(p->style.threads, p->bins.nx * p->bins.ny, 16, cover_tiles, p);
     }
@@ -184,9 +214,7 @@ static void blade_band(uint32_t first, uint32_t last, void *user)
     double *sum = g_new0(double, stride *(last - first));
     for (uint32_t i = 0; i < m->n; i++) {
         Vec2 a = m->v[i], b = m->v[i + 1 < m->n ? i + 1 : 0];
-        Vec2 pa = {(a.x - p->frame.corner.x) * p->frame.scale, (p->frame.corner.y - a.y) * p->frame.scale};
-        Vec2 pb = {(b.x - p->frame.corner.x) * p->frame.scale, (p->frame.corner.y - b.y) * p->frame.scale};
-        add_edge(sum, p->width, first, last, pa, pb);
+        add_edge(sum, p->width, first, last, to_image(p, a), to_image(p, b));
     }
     for (uint32_t y = first; y < last; y++) {
         double area = 0.0;

@@ -1,16 +1,26 @@
 /* Exact distance fields. A square of pixels keeps the strokes that may be nearest to one of its pixels: those whose
  * distance to its centre exceeds the least one by no more than the square's diameter. Its quarters choose among these.
- */
+ * Most choices are made between discs around the strokes, which are quick to compare. */
 #include <glib.h>
 
 #include "geom/parallel.h"
 #include "image/painter.h"
 
-enum { LEAF = 8, PART = 256 }; /* sides of squares: no longer quartered; done by one thread */
+enum { LEAF = 4, PART = 256 }; /* sides of squares: no longer quartered; done by one thread */
+
+/* A stroke as its middle, and how far from there it reaches for certain and at most. */
+typedef struct {
+    float x, y, inner, outer; /* pixels */
+    uint32_t i;
+} Near;
+
+/* More than single precision loses on images of the largest size, and then some. */
+static const float slack = 0.02f;
 
 typedef struct {
     uint32_t x, y, side;
-    uint32_t *item, n;
+    Near *item;
+    uint32_t n;
 } Square;
 
 typedef struct {
@@ -35,20 +45,49 @@ static bool wanted(const Field *f, const Square *q)
     return false;
 }
 
-/* Fills q->item from `from`; `distance` has room for n numbers. Returns the least distance to the centre. */
-static double choose(const Field *f, Square *q, const uint32_t *from, uint32_t n, double *distance)
+/* Fills q->item from `from`; `distance` has room for n numbers. */
+static void choose_rough(const Field *f, Square *q, const Near *from, uint32_t n, float *distance)
+{
+    float half = 0.5f * (float)q->side, reach = 0.7072f * (float)q->side, least = (float)INFINITY;
+    float x = (float)q->x + half, y = (float)q->y + half;
+    for (uint32_t i = 0; i < n; i++) {
+        float dx = from[i].x - x, dy = from[i].y - y, d = sqrtf(dx * dx + dy * dy);
+        least = MIN(least, d - from[i].inner);
+        distance[i] = d - from[i].outer;
+    }
+    float most = MIN(least + 2.0f * reach, (float)f->limit + reach) + slack;
+    q->n = 0;
+    for (uint32_t i = 0; i < n; i++)
+        if (distance[i] <= most)
+            q->item[q->n++] = from[i];
+}
+
+/* The same by true distances, worth it for strokes longer than the square. */
+static void choose_well(const Field *f, Square *q, float *distance)
 {
     double half = 0.5 * q->side, reach = 0.7072 * q->side, least = (double)INFINITY, t;
     Vec2 centre = vec2(q->x + half, q->y + half);
-    for (uint32_t i = 0; i < n; i++) {
-        distance[i] = capsule_distance(f->shape(from[i], f->user), centre, &t);
-        least = MIN(least, distance[i]);
+    for (uint32_t i = 0; i < q->n; i++) {
+        double d = capsule_distance(f->shape(q->item[i].i, f->user), centre, &t);
+        distance[i] = (float)d;
+        least = MIN(least, d);
     }
-    q->n = 0;
-    for (uint32_t i = 0; i < n; i++)
-        if (distance[i] <= least + 2.0 * reach && distance[i] <= f->limit + reach)
-            q->item[q->n++] = from[i];
-    return least;
+    float most = (float)MIN(least + 2.0 * reach, f->limit + reach) + slack;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < q->n; i++)
+        if (distance[i] <= most)
+            q->item[kept++] = q->item[i];
+    q->n = kept;
+}
+
+static void choose(const Field *f, Square *q, const Near *from, uint32_t n, float *distance)
+{
+    choose_rough(f, q, from, n, distance);
+    float spare = 0.0f;
+    for (uint32_t i = 0; i < q->n; i++)
+        spare += q->item[i].outer - q->item[i].inner;
+    if (q->n > 2 && spare > 0.25f * (float)q->side * (float)q->n)
+        choose_well(f, q, distance);
 }
 
 static void fill_pixels(const Field *f, const Square *q)
@@ -60,20 +99,24 @@ static void fill_pixels(const Field *f, const Square *q)
             if (!(f->where[at] > 0.0f))
                 continue;
             double least = f->limit, t;
-            for (uint32_t i = 0; i < q->n; i++)
-                least = MIN(least, capsule_distance(f->shape(q->item[i], f->user), vec2(x + 0.5, y + 0.5), &t));
+            for (uint32_t i = 0; i < q->n; i++) {
+                const Near *k = &q->item[i];
+                double dx = x + 0.5 - (double)k->x, dy = y + 0.5 - (double)k->y, far = least + (double)(k->outer + slack);
+                if (far > 0.0 && dx * dx + dy * dy <= far * far)
+                    least = MIN(least, capsule_distance(f->shape(k->i, f->user), vec2(x + 0.5, y + 0.5), &t));
+            }
             f->out[at] = (float)least;
         }
 }
 
 /* `distance` has room for as many numbers as the list of q: the lists of smaller squares are no longer. */
-static void fill_square(const Field *f, const Square *q, double *distance)
+static void fill_square(const Field *f, const Square *q, float *distance)
 {
     if (q->side <= LEAF || q->n <= 2) {
         fill_pixels(f, q);
         return;
     }
-    uint32_t *item = g_new(uint32_t, q->n + 1);
+    Near *item = g_new(Near, q->n + 1);
     for (uint32_t i = 0; i < 4; i++) {
         uint32_t h = q->side / 2;
         Square part = {q->x + (i & 1) * h, q->y + (i >> 1) * h, h, item, 0};
@@ -90,7 +133,7 @@ static void fill_squares(uint32_t first, uint32_t last, void *user)
     const Field *f = user;
     for (uint32_t i = first; i < last; i++) {
         const Square *q = &g_array_index(f->squares, Square, i);
-        double *distance = g_new(double, q->n + 1);
+        float *distance = g_new(float, q->n + 1);
         fill_square(f, q, distance);
         g_free(distance);
     }
@@ -105,8 +148,8 @@ static void choose_squares(uint32_t first, uint32_t last, void *user)
         const Square *parent = &g_array_index(f->parents, Square, i / 4);
         if (q->x >= f->width || q->y >= f->height || !wanted(f, q))
             continue;
-        double *distance = g_new(double, parent->n + 1);
-        uint32_t *item = g_new(uint32_t, parent->n + 1);
+        float *distance = g_new(float, parent->n + 1);
+        Near *item = g_new(Near, parent->n + 1);
         q->item = item;
         choose(f, q, parent->item, parent->n, distance);
         q->item = g_memdup2(item, (q->n + 1) * sizeof *item);
@@ -151,11 +194,15 @@ float *distance_field(const Painter *p, const Capsule *(*shape)(uint32_t i, cons
 {
     Field f = {p->width, p->rows, p->style.threads, shape, user, where, limit, NULL, NULL, NULL};
     f.out = g_new0(float, (gsize)p->width * p->rows);
-    Square root = {0, 0, PART, g_new(uint32_t, n + 1), n};
+    Square root = {0, 0, PART, g_new(Near, n + 1), n};
     while (root.side < MAX(p->width, p->rows))
         root.side *= 2;
-    for (uint32_t i = 0; i < n; i++)
-        root.item[i] = i;
+    for (uint32_t i = 0; i < n; i++) {
+        const Capsule *k = shape(i, user);
+        Vec2 m = vec_lerp(k->a, k->b, 0.5);
+        root.item[i] = (Near){(float)m.x, (float)m.y, (float)(0.5 * (k->ra + k->rb)),
+                              (float)(0.5 * k->length + MAX(k->ra, k->rb)), i};
+    }
     f.squares = g_array_new(FALSE, TRUE, sizeof(Square));
     g_array_append_val(f.squares, root);
     while (f.squares->len > 0 && g_array_index(f.squares, Square, 0).side > PART)
@@ -199,7 +246,7 @@ const float *painter_inset(Painter *p)
         edge[i] = capsule_new(vec2((a.x - p->frame.corner.x) * s, (p->frame.corner.y - a.y) * s), 0.0,
                               vec2((b.x - p->frame.corner.x) * s, (p->frame.corner.y - b.y) * s), 0.0);
     }
-    p->inset = distance_field(p, margin_shape, edge, n, painter_blade(p), painter_inset_limit(p));
+    p->inset = distance_field(p, margin_shape, edge, n, painter_blade(p), MAX(p->band, LINE_REACH));
     g_free(edge);
     return p->inset;
 }

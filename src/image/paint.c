@@ -64,6 +64,20 @@ PaintStyle paint_style_default(void)
     return s;
 }
 
+/* As wide as a part of the blade is narrow (area over perimeter is half the width of a strip), on broad blades of the
+ * leaf's length. */
+static double band_width(const Painter *p)
+{
+    const Polygon *m = p->net->margin;
+    double around = 0.0;
+    if (m == NULL)
+        return 1.0;
+    for (uint32_t i = 0; i < m->n; i++)
+        around += vec_dist(m->v[i], m->v[i + 1 < m->n ? i + 1 : 0]);
+    double length = MAX(m->box.x1 - m->box.x0, m->box.y1 - m->box.y0), half = around > 0.0 ? m->area / around : 0.0;
+    return MAX(MIN(0.05 * half, 0.006 * length) * p->frame.scale, 1.0);
+}
+
 /* What the leaf is like as a whole. */
 static void survey(Painter *p)
 {
@@ -74,6 +88,7 @@ static void survey(Painter *p)
         length += vec_dist(net->node[net->tail[e]], net->node[net->head[e]]);
     }
     double area = net->margin != NULL ? net->margin->area : 0.0;
+    p->band = band_width(p);
     p->spacing = length > 0.0 && area > 0.0 ? area / length : 1.0;
 }
 
@@ -174,12 +189,32 @@ Plane *painter_paint(Painter *p, MapId id)
     }
 }
 
+typedef struct {
+    const Painter *p;
+    Plane *plane;
+    double line; /* width, pixels */
+} Ink;
+
+static void ink_row(uint32_t y, void *user)
+{
+    const Ink *k = user;
+    const Painter *p = k->p;
+    for (uint32_t x = 0; x < p->width; x++) {
+        gsize at = (gsize)y * p->width + x;
+        double paper = 1.0;
+        if (p->net->margin != NULL) /* just inside the margin, so that the line ends where the blade does */
+            paper -= 0.5 * (double)p->blade[at] * CLAMP(k->line + 0.5 - (double)p->inset[at], 0.0, 1.0);
+        k->plane->px[at] = (float)(paper * (1.0 - (double)p->cover[at]));
+    }
+}
+
 Plane *painter_veins(Painter *p)
 {
-    Plane *plane = plane_new(p->width, p->rows, 1, PLANE_DATA);
-    const float *cover = painter_cover(p);
-    gsize n = (gsize)p->width * p->rows;
-    for (gsize i = 0; i < n; i++)
-        plane->px[i] = 1.0f - cover[i];
-    return plane;
+    double size = MAX(p->width, p->rows);
+    Ink k = {p, plane_new(p->width, p->rows, 1, PLANE_DATA), CLAMP(1.5 * size / 2048.0, 0.75, LINE_REACH - 1.0)};
+    painter_cover(p);
+    painter_blade(p);
+    painter_inset(p);
+    painter_rows(p, ink_row, &k);
+    return k.plane;
 }

@@ -70,7 +70,7 @@ void painter_free(Painter *p);
 /* Paints one map; the shared parts (coverage, nearest vein, distance) are computed once and kept in the painter. */
 Plane *painter_paint(Painter *p, MapId id);
 
-/* Black veins on white, no blade: the paper's own look. One channel, values 0 … 1. */
+/* Black veins on white, the paper's own look, and a thin grey line along the margin. One channel, values 0 … 1. */
 Plane *painter_veins(Painter *p);
 
 #endif

@@ -7,6 +7,8 @@
 #include "image/paint.h"
 #include "image/stroke.h"
 
+enum { LINE_REACH = 16 }; /* pixels within which the margin may be drawn as a line */
+
 /* A pixel's vein: which stroke, and whether the pixel belongs to it or lies beside it. */
 enum { OWNER_NONE = 0xFFFFFFFFu, OWNER_BESIDE = 0x80000000u };
 
@@ -17,15 +19,16 @@ struct Painter {
     uint32_t width, rows; /* of the image, pixels */
     double widest;        /* largest vein width, segments */
     double spacing;       /* blade area over vein length, segments: distance of neighbouring veins in a net */
+    double band;          /* width of the band along the margin, pixels */
     Circle *circle;
 
     Strokes *strokes; /* as exact as the image can show */
     Bins bins;
-    float *cover;       /* part of the pixel covered by veins */
+    float *cover;       /* part of the pixel covered by veins within the blade */
     float *blade;       /* part of the pixel covered by the blade */
     uint32_t *owner;    /* stroke at the pixel, see above */
     float *away;        /* distance from the pixel's centre to the nearest vein, pixels; negative inside a vein */
-    float *inset;       /* distance to the margin, pixels, no larger than inset_limit */
+    float *inset;       /* distance to the margin, pixels, exact up to `band` and LINE_REACH */
     float *vein_height; /* relief of the veins alone, segments */
     float *halo;        /* nearness of large veins, 0 … 1 */
     float *arch;        /* arch of the blade between veins, 0 at a vein, 1 in the middle of a mesh */
@@ -46,8 +49,7 @@ const float *painter_arch(Painter *p);
 const float *painter_height(Painter *p);
 const uint32_t *painter_source(Painter *p);
 
-double painter_inset_limit(const Painter *p); /* pixels */
-double painter_round_up(double value);        /* to two significant digits */
+double painter_round_up(double value); /* to two significant digits */
 
 /* Distance of each pixel's centre to the nearest of n strokes, exact up to `limit`, beyond which it is `limit`; 0 where
  * `where` is 0 (strokes may then be farther or nearer). Signed: negative inside a stroke. */

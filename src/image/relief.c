@@ -1,5 +1,6 @@
 /* The bulge of each vein on the abaxial side, and the light band along large veins. */
 #include <glib.h>
+#include <string.h>
 
 #include "geom/parallel.h"
 #include "image/painter.h"
@@ -34,18 +35,46 @@ static double profile(double u)
     return rest > 0.0 ? foot * rest * rest : 0.0;
 }
 
-static void lift(const Relief *r, const Capsule *k, uint32_t x, uint32_t y)
+/* The bulges at one pixel: of the highest vein, and of the highest other one. */
+typedef struct {
+    uint32_t vein;
+    float first, second; /* segments */
+} Bulge;
+
+static void bulge_add(Bulge *b, uint32_t vein, float height)
+{
+    if (height <= 0.0f)
+        return;
+    if (vein == b->vein) {
+        b->first = MAX(b->first, height);
+    } else if (height > b->first) {
+        b->second = b->first;
+        b->first = height;
+        b->vein = vein;
+    } else {
+        b->second = MAX(b->second, height);
+    }
+}
+
+/* Veins that meet merge in a fillet, not in a crease: a maximum that is rounded where the two are about equal. */
+static float bulge_height(const Bulge *b)
+{
+    double first = (double)b->first, second = (double)b->second, gap = first - second, round = 0.6 * second;
+    return (float)(0.5 * (first + second + sqrt(gap * gap + round * round)));
+}
+
+static void lift(const Relief *r, const Stroke *s, uint32_t x, uint32_t y, Bulge *bulge)
 {
     Painter *p = r->p;
+    const Capsule *k = &s->shape;
     double t, distance = capsule_distance(k, vec2(x + 0.5, y + 0.5), &t), radius = capsule_radius(k, t);
     double drawn = MAX(radius, least_radius), u = (distance + radius) / drawn;
     /* equal volume: height times width is that of the vein itself */
     double height = p->style.relief * radius / p->frame.scale * (radius / drawn) * profile(u);
-    gsize at = (gsize)y * p->width + x;
-    if (height > (double)p->vein_height[at])
-        p->vein_height[at] = (float)height;
+    bulge_add(bulge, s->vein, (float)height);
     double share = 2.0 * radius / p->frame.scale / p->widest;
     if (share > halo_from && u < halo_reach) {
+        gsize at = (gsize)y * p->width + x;
         double fall = 1.0 - u / halo_reach,
                halo = sqrt((share - halo_from) / (1.0 - halo_from)) * fall * fall * (3.0 - 2.0 * fall);
         if (halo > (double)p->halo[at])
@@ -53,23 +82,32 @@ static void lift(const Relief *r, const Capsule *k, uint32_t x, uint32_t y)
     }
 }
 
-static void raise_tiles(uint32_t first, uint32_t last, void *user)
+static void raise_tile(const Relief *r, uint32_t tile, Bulge *bulge)
 {
-    const Relief *r = user;
-    for (uint32_t tile = first; tile < last; tile++) {
-        TileBox box = bins_tile(&r->bins, tile);
-        for (uint32_t i = r->bins.start[tile]; i < r->bins.start[tile + 1]; i++) {
-            uint32_t stroke = r->bins.item[i], y0, y1;
-            Capsule area = relief_shape(stroke, r);
-            pixel_rows(&area, box.y0, box.y1, &y0, &y1);
-            for (uint32_t y = y0; y < y1; y++) {
-                uint32_t x0, x1;
-                pixels_centred(capsule_chord(&area, y + 0.5), box.x0, box.x1, &x0, &x1);
-                for (uint32_t x = x0; x < x1; x++)
-                    lift(r, &r->strokes->v[stroke].shape, x, y);
-            }
+    TileBox box = bins_tile(&r->bins, tile);
+    memset(bulge, 0, TILE * TILE * sizeof *bulge);
+    for (uint32_t i = r->bins.start[tile]; i < r->bins.start[tile + 1]; i++) {
+        uint32_t stroke = r->bins.item[i], y0, y1;
+        Capsule area = relief_shape(stroke, r);
+        pixel_rows(&area, box.y0, box.y1, &y0, &y1);
+        for (uint32_t y = y0; y < y1; y++) {
+            uint32_t x0, x1;
+            pixels_centred(capsule_chord(&area, y + 0.5), box.x0, box.x1, &x0, &x1);
+            for (uint32_t x = x0; x < x1; x++)
+                lift(r, &r->strokes->v[stroke], x, y, &bulge[(y - box.y0) * TILE + x - box.x0]);
         }
     }
+    for (uint32_t y = box.y0; y < box.y1; y++)
+        for (uint32_t x = box.x0; x < box.x1; x++)
+            r->p->vein_height[(gsize)y * r->p->width + x] = bulge_height(&bulge[(y - box.y0) * TILE + x - box.x0]);
+}
+
+static void raise_tiles(uint32_t first, uint32_t last, void *user)
+{
+    Bulge *bulge = g_new(Bulge, TILE * TILE);
+    for (uint32_t tile = first; tile < last; tile++)
+        raise_tile(user, tile, bulge);
+    g_free(bulge);
 }
 
 const float *painter_vein_height(Painter *p)

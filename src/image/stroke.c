@@ -72,7 +72,8 @@ static void collect_knots(Builder *b, const Network *net, const Frame *frame, co
 }
 
 /* Murray's law makes a vein narrower at once where a branch leaves; in a leaf it takes about a vein's width. So radii
- * are averaged along the vein over `blend` radii to either side, less near its ends. sum[i] is the integral of the
+ * are averaged along the vein over `blend` radii to either side, less near its tip, and at its origin over what lies ahead:
+ * there several veins may leave at once, and what stands for all of them would be a bulb. sum[i] is the integral of the
  * radius up to knot i, at[i] the arc length. */
 static double integral(const double *at, const double *sum, const Knot *k, uint32_t n, double s)
 {
@@ -99,9 +100,10 @@ static void blend_radii(Builder *b)
         sum[i] = sum[i - 1] + 0.5 * (at[i] - at[i - 1]) * (k[i - 1].r + k[i].r);
     }
     for (uint32_t i = 0; i < n; i++) {
-        double w = MIN(blend * k[i].r, MIN(at[i] - at[0], at[n - 1] - at[i]));
-        mean[i] =
-            w > 0.0 ? (integral(at, sum, k, n, at[i] + w) - integral(at, sum, k, n, at[i] - w)) / (2.0 * w) : k[i].r;
+        double ahead = MIN(blend * k[i].r, at[n - 1] - at[i]), back = MIN(ahead, at[i]), span = ahead + back;
+        mean[i] = span > 0.0
+                      ? (integral(at, sum, k, n, at[i] + ahead) - integral(at, sum, k, n, at[i] - back)) / span
+                      : k[i].r;
     }
     for (uint32_t i = 0; i < n; i++)
         k[i].r = mean[i];

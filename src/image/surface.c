@@ -191,7 +191,7 @@ static void paint_occlusion(Painter *p, Plane *plane)
     s.weight = g_new(float, n);
     for (int i = 0; i < 2; i++) {
         s.radius = radius[i];
-        s.strength = i == 0 ? 1.0 : 1.6;
+        s.strength = i == 0 ? 2.0 : 3.0;
         if (s.radius * p->frame.scale < 0.5)
             continue;
         blur_surface(&s, s.radius * p->frame.scale);
@@ -201,17 +201,10 @@ static void paint_occlusion(Painter *p, Plane *plane)
     g_free(s.weight);
 }
 
-double painter_inset_limit(const Painter *p)
-{
-    Box2 box = p->net->margin != NULL ? p->net->margin->box : (Box2){0.0, 0.0, 0.0, 0.0};
-    double length = MAX(box.x1 - box.x0, box.y1 - box.y0);
-    return MAX(0.010 * length * p->frame.scale, 1.0);
-}
-
 static void thickness_row(uint32_t y, void *user)
 {
     const Surface *s = user;
-    double limit = painter_inset_limit(s->p);
+    double limit = s->p->band;
     for (uint32_t x = 0; x < s->p->width; x++) {
         gsize at = (gsize)y * s->p->width + x;
         if (!(s->p->blade[at] > 0.0f))
@@ -235,7 +228,7 @@ double painter_round_up(double value)
 Plane *paint_surface(Painter *p, MapId id)
 {
     Plane *plane = painter_plane(p, id);
-    double tallest = 0.5 * p->style.relief * p->widest;
+    double tallest = 0.65 * p->style.relief * p->widest; /* where veins merge they stand higher than either */
     Surface s = {.p = p, .plane = plane};
     if (id == MAP_HEIGHT) {
         memcpy(plane->px, painter_height(p), (gsize)p->width * p->rows * sizeof(float));

@@ -3,6 +3,7 @@
 #include <glib.h>
 #include <glib/gstdio.h>
 #include <locale.h>
+#include <math.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "export/export.h"
+#include "export/sink.h"
 #include "geom/random.h"
 
 static char *folder;
@@ -20,7 +22,7 @@ static char *in_folder(const char *name)
     return g_build_filename(folder, name, NULL);
 }
 
-static char *slurp(const char *path, gsize *length)
+G_GNUC_NO_INLINE static char *slurp(const char *path, gsize *length)
 {
     char *text = NULL;
     GError *error = NULL;
@@ -151,6 +153,43 @@ static void test_numbers(void)
         g_assert_cmpmem(&value, sizeof value, &back, sizeof back);
         g_assert_cmpuint(s->len, <=, 24);
     }
+    g_string_free(s, TRUE);
+}
+
+/* Against printf, which rounds exactly and half to even; and numbers that lie just beside a half. */
+static void test_millionths(void)
+{
+    GString *s = g_string_new(NULL);
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0, "0"}, {-0.0, "0"}, {-1e-9, "0"}, {0.25, "0.25"}, {-3.0000004, "-3"}, {0.99999949, "0.999999"},
+                 {0.99999951, "1"}, {-1234.5, "-1234.5"}, {999999999999.5, "999999999999.5"}, {1e12, "1000000000000"},
+                 {5e-7, "0"}, {5.0000001e-7, "0.000001"}, {1e300, "1e+300"}, {0.0078125, "0.007812"}, {0.0234375, "0.023438"}};
+    for (gsize i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_string_truncate(s, 0);
+        sink_millionths(s, cases[i].value);
+        g_assert_cmpstr(s->str, ==, cases[i].text);
+    }
+    for (uint32_t i = 0; i < 200000; i++) {
+        RandomBlock b = random_block(11, 1, 0, i);
+        double value = (double)(int32_t)b.w[0] * (1.0 + b.w[1] * 0x1p-32) / (double)(UINT64_C(1) << b.w[2] % 50);
+        if (b.w[2] >> 31) /* halves of a millionth and their neighbours */
+            value = nextafter((b.w[0] % 10000000 + 0.5) * 1e-6, b.w[3] % 3 == 0 ? 0.0 : b.w[3] % 3 == 1 ? 100.0 : 50.0);
+        char want[64];
+        snprintf(want, sizeof want, "%.6f", value);
+        char *end = want + strlen(want);
+        while (end[-1] == '0')
+            *--end = '\0';
+        if (end[-1] == '.')
+            *--end = '\0';
+        g_string_truncate(s, 0);
+        sink_millionths(s, value);
+        g_assert_cmpstr(s->str, ==, strcmp(want, "-0") == 0 ? "0" : want);
+    }
+    g_string_truncate(s, 0);
+    sink_size(s, 1.0 / 300);
+    g_assert_cmpfloat(g_ascii_strtod(s->str, NULL), ==, 1.0 / 300); /* small sizes lose nothing */
     g_string_free(s, TRUE);
 }
 
@@ -331,8 +370,8 @@ static void test_tables(void)
         char **f = g_strsplit(lines[i + 1], ",", -1);
         g_assert_cmpuint(g_strv_length(f), ==, 4);
         g_assert_cmpuint(g_ascii_strtoull(f[0], NULL, 10), ==, i);
-        g_assert_true(g_ascii_strtod(f[1], NULL) == net->node[i].x);
-        g_assert_true(g_ascii_strtod(f[2], NULL) == net->node[i].y);
+        g_assert_cmpfloat(fabs(g_ascii_strtod(f[1], NULL) - net->node[i].x), <=, 0.5001e-6);
+        g_assert_cmpfloat(fabs(g_ascii_strtod(f[2], NULL) - net->node[i].y), <=, 0.5001e-6);
         g_assert_cmpuint(g_ascii_strtoull(f[3], NULL, 10), ==, net->node_birth[i]);
         g_strfreev(f);
     }
@@ -352,9 +391,10 @@ static void test_tables(void)
             if (k != 2 && k != 6 && k != 7)
                 g_assert_cmpuint(g_ascii_strtoull(f[k], NULL, 10), ==, whole[k]);
         g_assert_cmpstr(f[2], ==, e + 1 == net->n_edges ? "anastomosis" : "vein");
-        g_assert_true(g_ascii_strtod(f[6], NULL) == net->width[e]);
-        g_assert_true(g_ascii_strtod(f[7], NULL) == net->flow[e]);
-        g_assert_true(g_ascii_strtod(f[9], NULL) == vec_dist(net->node[net->tail[e]], net->node[net->head[e]]));
+        g_assert_cmpfloat(fabs(g_ascii_strtod(f[6], NULL) - net->width[e]), <=, 0.5001e-6);
+        g_assert_cmpfloat(fabs(g_ascii_strtod(f[7], NULL) - net->flow[e]), <=, 0.5001e-6);
+        double length = vec_dist(net->node[net->tail[e]], net->node[net->head[e]]);
+        g_assert_cmpfloat(fabs(g_ascii_strtod(f[9], NULL) - length), <=, 0.5001e-6);
         g_strfreev(f);
     }
     g_strfreev(lines);
@@ -405,7 +445,7 @@ static void test_graphml(void)
             y += net->node[i].y;
             births += net->node_birth[i];
         }
-        g_assert_cmpfloat(fabs(g_ascii_strtod(reported(l, "node.y") + 6, NULL) - y), <, 1e-9);
+        g_assert_cmpfloat(fabs(g_ascii_strtod(reported(l, "node.y") + 6, NULL) - y), <, 1e-6 * net->n_nodes);
         g_assert_cmpfloat(g_ascii_strtod(reported(l, "node.birth") + 4, NULL), ==, births);
         g_strfreev(l);
         g_free(out);
@@ -488,13 +528,40 @@ static void test_svg_runs(void)
     g_assert_true(export_svg(net, &frame, &style, NULL, path, NULL));
     gsize n;
     char *text = slurp(path, &n);
-    assert_has(text, "<path stroke-width=\"0.988\" d=\"M0,0 1,0 2,0.01 3,0.01\"/>\n<path stroke-width=\"0.895\" "
+    assert_has(text, "<path stroke-width=\"0.988\" d=\"M0,0 1,0 2,0.01 3,0.01\"/>\n<path "
                      "d=\"M3,0.01 4,0.02 5,0.02\"/>\n");
     g_free(text);
     net->n_edges = 0; /* nothing grown yet */
     g_assert_true(export_svg(net, &frame, &style, NULL, path, NULL));
     text = slurp(path, &n);
     g_assert_null(strstr(text, "order-"));
+    g_free(text);
+    g_unlink(path);
+    g_free(path);
+    network_free(net);
+}
+
+/* Veins are cut off at the margin, and the veinlets of a crowded order share paths: none is lost, none is drawn twice. */
+static void test_svg_crowd(void)
+{
+    Network *net = small_leaf(6000);
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        if (net->order[e] == 2)
+            net->width[e] = 0.01 * (1 + net->vein[e] % 3);
+    Frame frame = frame_of(8);
+    PaintStyle style = green();
+    char *path = in_folder("c.svg");
+    g_assert_true(export_svg(net, &frame, &style, NULL, path, NULL));
+    gsize n;
+    char *text = slurp(path, &n), *order2 = strstr(text, "id=\"order-2\""), *order1 = strstr(text, "id=\"order-1\"");
+    assert_has(text, "<clipPath id=\"inside\"><use href=\"#blade\"/></clipPath>\n<g id=\"veins\"");
+    assert_has(text, "inkscape:label=\"Veins\" clip-path=\"url(#inside)\">");
+    g_assert_true(order2 != NULL && order1 != NULL && order2 < order1);
+    *order1 = '\0';
+    g_assert_cmpuint(count(order2, "<path"), ==, 3 * 32); /* 2000 veins of each width, 64 a path */
+    g_assert_cmpuint(count(order2, "M"), ==, 6000);
+    g_assert_cmpuint(count(order2, " stroke-width=\"0.03\" d="), ==, 32);
+    g_assert_cmpuint(count(order2, ","), ==, 1 + 3 * 6000); /* three points each, and one in the label */
     g_free(text);
     g_unlink(path);
     g_free(path);
@@ -531,6 +598,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     folder = g_dir_make_tmp("venation-export-XXXXXX", NULL);
     g_test_add_func("/export/numbers", test_numbers);
+    g_test_add_func("/export/millionths", test_millionths);
     g_test_add_func("/export/json", test_json);
     g_test_add_func("/export/text", test_text);
     g_test_add_func("/export/failures", test_failures);
@@ -540,6 +608,7 @@ int main(int argc, char **argv)
     g_test_add_func("/export/graphml", test_graphml);
     g_test_add_func("/export/svg", test_svg);
     g_test_add_func("/export/svg-runs", test_svg_runs);
+    g_test_add_func("/export/svg-crowd", test_svg_crowd);
     if (g_test_perf())
         g_test_add_func("/export/speed", test_speed);
     int result = g_test_run();

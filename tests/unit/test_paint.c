@@ -128,9 +128,10 @@ static void test_capsule(void)
     }
 }
 
-/* Coverage of the pixel at x, y by brute force. */
-static double sampled(const Strokes *s, uint32_t x, uint32_t y, int n)
+/* Coverage by veins within the blade of the pixel at x, y by brute force. */
+static double sampled(const Painter *p, uint32_t x, uint32_t y, int n)
 {
+    const Strokes *s = p->strokes;
     int hit = 0;
     double t;
     const Stroke *near[64];
@@ -143,7 +144,9 @@ static double sampled(const Strokes *s, uint32_t x, uint32_t y, int n)
             bool in = false;
             for (uint32_t k = 0; k < m && !in; k++)
                 in = capsule_distance(&near[k]->shape, vec2(x + (i + 0.5) / n, y + (j + 0.5) / n), &t) <= 0.0;
-            hit += in;
+            Vec2 leaf = vec2(p->frame.corner.x + (x + (i + 0.5) / n) / p->frame.scale,
+                             p->frame.corner.y - (y + (j + 0.5) / n) / p->frame.scale);
+            hit += in && polygon_contains(p->net->margin, leaf);
         }
     return (double)hit / (n * n);
 }
@@ -157,7 +160,7 @@ static void check_coverage(Network *net, double scale)
     for (uint32_t y = 0; y < 40; y++)
         for (uint32_t x = 0; x < 40; x++) {
             /* 64 x 64 samples err by 1/128 along a straight edge that lies along the grid, and two may do so */
-            double error = (double)cover[y * 40 + x] - sampled(p->strokes, x, y, 64);
+            double error = (double)cover[y * 40 + x] - sampled(p, x, y, 64);
             g_assert_cmpfloat(fabs(error), <, 0.016);
             sum += error;
         }
@@ -177,6 +180,85 @@ static void test_coverage(void)
         check_coverage(net_tree(6, 30, 0.5, seed), 12.0); /* smoothed */
         check_coverage(net_tree(60, 20, 0.4, seed), 0.25);
     }
+}
+
+/* A star whose points are narrower than a pixel at some sizes. */
+static Polygon *star_margin(void)
+{
+    Vec2 star[14];
+    for (int i = 0; i < 14; i++) {
+        double r = i % 2 == 0 ? 19.0 : 5.3, a = i * acos(-1.0) / 7.0 + 0.1;
+        star[i] = vec2(r * cos(a), 20.0 + r * sin(a));
+    }
+    return polygon_new(star, 14);
+}
+
+/* Veins that run out of the blade end at the margin, exactly, wherever it runs through a pixel. */
+static void test_clip(void)
+{
+    for (uint64_t seed = 0; seed < 3; seed++)
+        for (int k = 0; k < 3; k++) {
+            static const double scale[] = {0.9, 0.3, 4.0};
+            Network *net = k == 1 ? net_straws(40, 3.0, seed) : net_tree(30, 20, 2.0, seed);
+            polygon_free(net->margin);
+            net->margin = star_margin();
+            check_coverage(net, scale[k]);
+        }
+}
+
+/* What stands on the margin at the base: the vein's round end does not show, in no map. */
+static void test_base(void)
+{
+    Network *net = net_new(2, 1, square, 4);
+    net->node[0] = vec2(0.0, 0.0);
+    net->node[1] = vec2(0.0, 30.0);
+    net->head[0] = 1;
+    net->width[0] = 10.0;
+    net->n_veins = 1;
+    Frame f = {120, 120, 2.0, {-30.0, 50.0}}; /* the base lies along the bottom of row 99 */
+    Painter *p = painter_at(net, &f, 2);
+    static const MapId id[] = {MAP_VEIN_MASK, MAP_VEIN_ORDER, MAP_VEIN_ID, MAP_VEIN_WIDTH, MAP_AGE};
+    for (int i = 0; i < 5; i++) {
+        Plane *map = painter_paint(p, id[i]);
+        for (uint32_t x = 0; x < 120; x++) {
+            if (id[i] != MAP_AGE) /* as wide on the margin as above it */
+                g_assert_true((map->px[99 * 120 + x] > 0.0f) == (x >= 50 && x < 70));
+            g_assert_cmpfloat(map->px[100 * 120 + x], ==, 0.0f);
+        }
+        plane_free(map);
+    }
+    Plane *veins = painter_veins(p);
+    for (uint32_t y = 100; y < 120; y++)
+        for (uint32_t x = 0; x < 120; x++)
+            g_assert_cmpfloat(veins->px[y * 120 + x], ==, 1.0f);
+    g_assert_cmpfloat(veins->px[99 * 120 + 60], ==, 0.0f);
+    g_assert_cmpfloat(veins->px[99 * 120 + 30], <, 0.8f); /* the margin's line */
+    g_assert_cmpfloat(veins->px[96 * 120 + 30], ==, 1.0f);
+    plane_free(veins);
+    painter_free(p);
+    network_free(net);
+}
+
+/* A vein that many others leave at its first node is not a bulb there: it tapers. */
+static void test_bulb(void)
+{
+    Network *net = net_new(31, 30, square, 4);
+    for (uint32_t i = 0; i <= 30; i++)
+        net->node[i] = vec2(0.0, i);
+    for (uint32_t e = 0; e < 30; e++) {
+        net->tail[e] = e;
+        net->head[e] = e + 1;
+        net->width[e] = e < 1 ? 8.0 : 3.0;
+    }
+    net->n_veins = 1;
+    Frame f = {400, 400, 10.0, {-20.0, 40.0}};
+    Strokes *s = strokes_new(net, &f, (StrokeTolerance){0.02, 0.0});
+    g_assert_cmpfloat(s->v[0].shape.ra, <, 26.0); /* pixels; 40 is what the first edge has */
+    g_assert_cmpfloat(fabs(s->v[s->n - 1].shape.rb - 15.0), <, 1e-9);
+    for (uint32_t i = 0; i < s->n; i++)
+        g_assert_cmpfloat((s->v[i].shape.ra - s->v[i].shape.rb) / MAX(s->v[i].shape.length, 1e-9), <, 0.3);
+    strokes_free(s);
+    network_free(net);
 }
 
 /* One straight vein of many edges: area and width at every size, from far below a pixel. */
@@ -486,6 +568,81 @@ static void test_normals(void)
     network_free(net);
 }
 
+/* ---- looks ---- */
+
+static double spread(const Plane *c, const float *blade, uint32_t channel)
+{
+    double low = 1.0, high = 0.0;
+    for (gsize i = 0; i < (gsize)c->width * c->height; i++)
+        if (blade[i] == 1.0f) {
+            low = MIN(low, (double)c->px[3 * i + channel]);
+            high = MAX(high, (double)c->px[3 * i + channel]);
+        }
+    return high - low;
+}
+
+/* Colours differ by no more than vein, blade and margin do: a blade of one colour is even, whatever that colour; in a
+ * pale one the veins are darker and nothing is lighter than the blade. */
+static void test_colours(void)
+{
+    Network *net = net_tree(120, 18, 1.2, 4);
+    Frame f = frame_fit(net->margin->box, 256, true, 0.02);
+    static const uint32_t colour[] = {0xfffdf8, 0x808080, 0x1f3f10, 0xc02010};
+    for (int k = 0; k < 4; k++)
+        for (int same = 0; same < 2; same++) {
+            PaintStyle style = paint_style_default();
+            style.variation = 0.0;
+            paint_colour(colour[k], style.lamina);
+            paint_colour(same ? colour[k] : 0xa0b078, style.vein);
+            paint_colour(colour[k], style.margin);
+            Painter *p = painter_new(net, &f, &style);
+            Plane *c = painter_paint(p, MAP_BASE_COLOR);
+            for (uint32_t i = 0; i < 3; i++) {
+                double lamina = (double)style.lamina[i], vein = (double)style.vein[i], contrast = fabs(lamina - vein);
+                g_assert_cmpfloat(spread(c, p->blade, i), <=, 1.2 * contrast + 0.16 * MIN(vein, 1.0 - vein) + 1e-3);
+                if (same == 0)
+                    g_assert_cmpfloat(spread(c, p->blade, i), >=, 0.7 * contrast - 0.02);
+                for (gsize j = 0; j < 256 * 256 && k == 0; j++)
+                    if (p->blade[j] == 1.0f)
+                        g_assert_cmpfloat((double)c->px[3 * j + i], <=, MIN(lamina + 0.06 * contrast, 1.0) + 2e-3);
+            }
+            plane_free(c);
+            painter_free(p);
+        }
+    network_free(net);
+}
+
+/* Part of the blade, across its middle, that the margin's colour reaches. */
+static double band_share(double width, double height)
+{
+    Vec2 margin[4] = {{-0.5 * width, 0.0}, {0.5 * width, 0.0}, {0.5 * width, height}, {-0.5 * width, height}};
+    Network *net = net_new(1, 0, margin, 4);
+    Frame f = {2000, 1, 2000.0 / width, {-0.5 * width, 0.5 * height}};
+    PaintStyle style = paint_style_default();
+    style.variation = 0.0;
+    paint_colour(0x000000, style.lamina);
+    paint_colour(0x000000, style.vein);
+    paint_colour(0xff0000, style.margin);
+    Painter *p = painter_new(net, &f, &style);
+    Plane *c = painter_paint(p, MAP_BASE_COLOR);
+    int reached = 0;
+    for (int x = 0; x < 2000; x++)
+        reached += c->px[3 * x] > 0.01f;
+    plane_free(c);
+    painter_free(p);
+    network_free(net);
+    return reached / 2000.0;
+}
+
+/* The band along the margin is narrow on blades of grass too. */
+static void test_band(void)
+{
+    g_assert_cmpfloat(band_share(100.0, 100.0), <, 0.015);
+    g_assert_cmpfloat(band_share(10.0, 100.0), <, 0.06);
+    g_assert_cmpfloat(band_share(1.0, 100.0), <, 0.06);
+    g_assert_cmpfloat(band_share(1.0, 100.0), >, 0.01);
+}
+
 /* ---- the whole ---- */
 
 static void test_threads(void)
@@ -580,6 +737,9 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/capsule", test_capsule);
     g_test_add_func("/paint/strokes", test_strokes);
     g_test_add_func("/paint/coverage/samples", test_coverage);
+    g_test_add_func("/paint/coverage/clip", test_clip);
+    g_test_add_func("/paint/base", test_base);
+    g_test_add_func("/paint/bulb", test_bulb);
     g_test_add_func("/paint/coverage/capsule", test_capsule_area);
     g_test_add_func("/paint/coverage/thin", test_thin_vein);
     g_test_add_func("/paint/coverage/sizes", test_area_over_sizes);
@@ -589,6 +749,8 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/labels/thin", test_thin_labels);
     g_test_add_func("/paint/labels/priority", test_label_priority);
     g_test_add_func("/paint/normals", test_normals);
+    g_test_add_func("/paint/colours", test_colours);
+    g_test_add_func("/paint/band", test_band);
     g_test_add_func("/paint/threads", test_threads);
     g_test_add_func("/paint/degenerate", test_degenerate);
     g_test_add_func("/paint/frame", test_frame);
