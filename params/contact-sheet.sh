@@ -21,7 +21,7 @@ for model in "$@"; do
     echo "$number/$count $name" >&2
     "$venation" grow "$params/$name.ini" -o "$work/$name" --size $((cell * 2)) --maps "base_color opacity" \
         --set texture.exr=none --set texture.margin=0.03 --set export.network=no --set export.svg=no --set export.veins_image=no
-    convert "$work/$name/${name}_base_color.png" "$work/$name/${name}_opacity.png" -alpha off -compose CopyOpacity -composite \
+    convert "$work/$name/${name}_base_color.png" "$work/$name/${name}_opacity.png" -alpha off -compose CopyOpacity -composite -compose Over \
         -resize "${cell}x${cell}" -background white -gravity center -extent "${cell}x${cell}" -flatten \
         -gravity south -splice "0x$((cell / 10))" -font DejaVu-Sans -pointsize $((cell / 22)) -fill '#333333' \
         -annotate "+0+$((cell / 40))" "$label (fig. $figure)" "$work/$name.png"

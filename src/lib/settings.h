@@ -31,7 +31,7 @@ PaintStyle settings_style(const Params *p, uint64_t seed, unsigned threads);
 gboolean settings_maps(const Params *p, gboolean *wanted, GError **error);
 
 /* Auxin sources of a CSV file: x, y and an optional step a line, separated by commas, semicolons or blanks; '#' begins a comment; a
- * first line of words is a heading. */
+ * first line that begins with the words x and y is a heading. */
 gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GError **error);
 
 #endif

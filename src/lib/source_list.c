@@ -45,7 +45,7 @@ gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GE
         char *copy = g_strstrip(g_strdup(line[i])), *part[4];
         uint32_t parts = split(line[i], part);
         double x, y, step = 0.0;
-        bool heading = i == 0 && parts >= 2 && !number(part[0], &x) && g_ascii_isalpha(part[0][0]);
+        bool heading = i == 0 && parts >= 2 && g_ascii_strcasecmp(part[0], "x") == 0 && g_ascii_strcasecmp(part[1], "y") == 0;
         if (parts && !heading) {
             ok = parts >= 2 && parts <= 3 && number(part[0], &x) && number(part[1], &y) &&
                  (parts == 2 || (number(part[2], &step) && step >= 0.0 && step == floor(step)));
@@ -57,6 +57,10 @@ gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GE
             }
         }
         g_free(copy);
+    }
+    if (ok && out->len == 0) {
+        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_SOURCES, "%s: holds no source: a line is x,y or x,y,step (segments from the base, tip along +y)", path);
+        ok = FALSE;
     }
     g_strfreev(line);
     g_free(text);

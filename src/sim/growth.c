@@ -215,6 +215,8 @@ Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
     refresh(b);
     b->widest = b->box;
     b->last_length = b->length;
+    if (b->moving)
+        b->last_shape = blade_outline(b);
     b->step = 0;
     refresh(b);
     b->widest = box_union(b->widest, b->box);
@@ -226,6 +228,7 @@ void blade_free(Blade *b)
     if (!b)
         return;
     polygon_free(b->shape);
+    polygon_free(b->last_shape);
     g_free((gpointer)b->def.rate_x);
     g_free((gpointer)b->def.rate_y);
     g_free(b->table);

@@ -41,7 +41,7 @@ struct Blade {
     Box2 box, widest;         /* of the blade in the frame, now and over the whole growth */
     bool moving;              /* material points move in the frame (nonuniform) */
     const Polygon *leaf;      /* the outline in leaf coordinates; borrowed */
-    Polygon *shape;           /* nonuniform: the outline now, in the frame */
+    Polygon *shape, *last_shape; /* nonuniform: the outline in the frame, now and at the end */
     struct GrowthTable *table;
     GrowthDef def;
 };

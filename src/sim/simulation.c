@@ -24,7 +24,8 @@ SimulationDef simulation_def_default(void)
 
 const char *end_reason_text(EndReason r)
 {
-    static const char *const text[] = {"running", "every source was reached", "no vein can reach the sources left", "veins.max_steps"};
+    static const char *const text[] = {"running", "every source was reached", "no vein can reach the sources left", "veins.max_steps",
+                                       "no source ever found room"};
     return text[r];
 }
 
@@ -79,9 +80,11 @@ static EndReason judge(const Simulation *s, uint32_t live)
         return END_MAX_STEPS;
     if (s->blade->step < s->blade->last_step || sources_waiting(s))
         return END_RUNNING;
+    if (sources_expected(s))
+        return END_RUNNING;
     if (sources_alive(s) == 0)
-        return sources_expected(s) ? END_RUNNING : END_NO_SOURCES;
-    return live == 0 && s->n_fresh == 0 ? END_UNREACHED : END_RUNNING;
+        return s->counts.placed ? END_NO_SOURCES : END_BARE;
+    return live || s->n_fresh ? END_RUNNING : END_UNREACHED;
 }
 
 bool simulation_step(Simulation *s)
@@ -213,7 +216,7 @@ SimulationCounts simulation_counts(const Simulation *s)
     c.nodes = s->veins.n;
     c.joins = s->veins.n_joins;
     c.sources = sources_alive(s);
-    c.given_up = c.end == END_RUNNING ? 0 : c.sources;
+    c.given_up = c.end == END_UNREACHED ? c.sources : 0;
     return c;
 }
 

@@ -57,6 +57,7 @@ typedef enum {
     END_NO_SOURCES, /* growth has ended and every source was reached */
     END_UNREACHED,  /* growth has ended and none of the sources left can be reached */
     END_MAX_STEPS,
+    END_BARE,       /* growth has ended and no source ever found room */
 } EndReason;
 const char *end_reason_text(EndReason r);
 
@@ -65,7 +66,7 @@ typedef struct {
     uint32_t sources;            /* alive now */
     uint64_t darts, placed;      /* thrown, accepted */
     uint64_t reached;            /* sources that veins reached */
-    uint64_t given_up;           /* sources still there when the run ended: no vein could reach them */
+    uint64_t given_up;           /* sources left that no vein can reach */
     uint64_t updates;            /* source neighbourhood updates (work done) */
     uint32_t most_sources;       /* alive at one step */
     EndReason end;

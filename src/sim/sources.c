@@ -283,7 +283,7 @@ static gboolean prepare_margin(Simulation *s, GError **error)
 static bool in_reach(const Simulation *s, Vec2 p)
 {
     if (s->blade->moving)
-        return box_has(s->blade->widest, p);
+        return polygon_contains(s->blade->last_shape, p) || polygon_depth(s->blade->last_shape, p) >= -1.0;
     double scale = s->blade->last_length;
     Vec2 leaf = vec_scale(p, 1.0 / scale);
     return polygon_contains(s->def.leaf, leaf) || polygon_depth(s->def.leaf, leaf) * scale >= -1.0;
