@@ -46,12 +46,13 @@ typedef struct {
     uint32_t step, nodes, sources;
     double length;       /* current leaf length, segments */
     double done;         /* rough part of the run that is done, 0 … 1 */
+    gboolean rehearsal;  /* the first of two growings (see snapshot_every), which has no snapshots */
     const VenLeaf *leaf; /* the state at this step when `snapshot_every` divides it and at the end, else NULL; valid during the call */
 } VenProgress;
 
 typedef struct {
     unsigned threads;        /* 0: all processors */
-    uint32_t snapshot_every; /* 0: never */
+    uint32_t snapshot_every; /* 0: never; else the leaf is grown twice, the first time to learn the scale that its frames share */
     gboolean (*progress)(const VenProgress *progress, gpointer user); /* called at every step when not NULL; FALSE stops the run, which then fails with G_IO_ERROR_CANCELLED */
     gpointer user;
 } VenOptions;

@@ -8,7 +8,8 @@
 #include "image/paint.h"
 #include "sim/network.h"
 
-/* SVG of blade and veins: one group an order (id order-1 …), each vein a path where width allows, round caps and joins, true
+/* SVG of blade and veins: one group an order (id order-1 …), each vein a path where width allows (in crowded orders veinlets
+ * of one width share paths), cut off at the margin, round caps and joins, true
  * widths; user unit = segment, y down. `frame` gives the view box, so that frames of one run share a scale. */
 gboolean export_svg(const Network *net, const Frame *frame, const PaintStyle *style, const char *title, const char *path, GError **error);
 

@@ -44,16 +44,15 @@ static void distance_row(uint32_t y, void *user)
         out[x] = (float)((double)MAX(away[x], 0.0f) / a->p->frame.scale);
 }
 
-/* What white stands for; depends on the network alone, so frames of one run compare. */
+/* What white stands for. */
 static double white(const Painter *p, MapId id)
 {
-    const Network *net = p->net;
     double top = 1.0;
     if (id == MAP_VEIN_WIDTH)
         top = p->widest;
     else if (id == MAP_AGE)
-        top = net->n_steps;
-    else if (id == MAP_DISTANCE && net->margin != NULL)
+        top = p->steps;
+    else if (id == MAP_DISTANCE && p->net->margin != NULL)
         top = painter_round_up(4.0 * p->spacing);
     return top > 0.0 ? top : 1.0;
 }

@@ -78,18 +78,42 @@ static double band_width(const Painter *p)
     return MAX(MIN(0.05 * half, 0.006 * length) * p->frame.scale, 1.0);
 }
 
+/* The width that veins as long as a part of the leaf together reach. At a base where many veins leave one node a single
+ * segment may bear the flow of all, which tells nothing about the leaf. */
+static double stout_width(const Network *net, double widest)
+{
+    enum { CLASSES = 256 };
+    static const double part = 0.03;
+    double length[CLASSES] = {0.0}, leaf = 0.0, sum = 0.0;
+    if (net->margin == NULL || !(widest > 0.0))
+        return widest;
+    leaf = MAX(net->margin->box.x1 - net->margin->box.x0, net->margin->box.y1 - net->margin->box.y0);
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        uint32_t c = (uint32_t)(net->width[e] / widest * (CLASSES - 1));
+        length[MIN(c, CLASSES - 1)] += vec_dist(net->node[net->tail[e]], net->node[net->head[e]]);
+    }
+    for (int c = CLASSES - 1; c > 0; c--) {
+        sum += length[c];
+        if (sum >= part * leaf)
+            return MIN(widest, widest * (c + 1) / (CLASSES - 1));
+    }
+    return widest;
+}
+
 /* What the leaf is like as a whole. */
 static void survey(Painter *p)
 {
-    const Network *net = p->net;
+    const Network *net = p->style.reference != NULL ? p->style.reference : p->net;
     double length = 0.0;
     for (uint32_t e = 0; e < net->n_edges; e++) {
         p->widest = MAX(p->widest, net->width[e]);
         length += vec_dist(net->node[net->tail[e]], net->node[net->head[e]]);
     }
     double area = net->margin != NULL ? net->margin->area : 0.0;
+    p->stout = stout_width(net, p->widest);
     p->band = band_width(p);
     p->spacing = length > 0.0 && area > 0.0 ? area / length : 1.0;
+    p->steps = net->n_steps;
 }
 
 Painter *painter_new(const Network *net, const Frame *frame, const PaintStyle *style)

@@ -54,6 +54,8 @@ typedef struct {
     uint32_t padding; /* pixels */
     uint64_t seed;    /* of the colour variation */
     unsigned threads; /* 0: all processors */
+    const Network *reference; /* network whose widths, density and steps set the scale of values and colours, so that frames of
+                               * one run compare; NULL: the painted one's own. Outlives the painter. */
 } PaintStyle;
 
 PaintStyle paint_style_default(void);

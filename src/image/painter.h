@@ -18,6 +18,8 @@ struct Painter {
     PaintStyle style;
     uint32_t width, rows; /* of the image, pixels */
     double widest;        /* largest vein width, segments */
+    uint32_t steps;       /* of the run */
+    double stout;         /* what the widest veins are for a stretch, not just where all of them come together, segments */
     double spacing;       /* blade area over vein length, segments: distance of neighbouring veins in a net */
     double band;          /* width of the band along the margin, pixels */
     Circle *circle;

@@ -9,7 +9,7 @@
  * FILLET radii beyond its edge, joined smoothly at a height of `foot`. */
 static const double fillet = 0.6, foot = 0.375; /* foot = fillet / (1 + fillet) makes the slopes agree */
 static const double halo_reach = 2.2;           /* radii from the axis */
-static const double halo_from = 0.08;           /* of the widest vein: where a vein begins to have a halo */
+static const double halo_from = 0.08;           /* of the stout veins: where a vein begins to have a halo */
 static const double least_radius = 0.8;         /* pixels; thinner veins are drawn this thick and as much lower */
 
 typedef struct {
@@ -22,7 +22,7 @@ static Capsule relief_shape(uint32_t i, const void *user)
 {
     const Relief *r = user;
     const Capsule *k = &r->strokes->v[i].shape;
-    double wide = 0.5 * halo_from * r->p->widest * r->p->frame.scale;
+    double wide = 0.5 * halo_from * r->p->stout * r->p->frame.scale;
     double reach = MAX(k->ra, k->rb) > wide ? halo_reach : 1.0 + fillet;
     return capsule_new(k->a, MAX(k->ra, least_radius) * reach, k->b, MAX(k->rb, least_radius) * reach);
 }
@@ -72,11 +72,11 @@ static void lift(const Relief *r, const Stroke *s, uint32_t x, uint32_t y, Bulge
     /* equal volume: height times width is that of the vein itself */
     double height = p->style.relief * radius / p->frame.scale * (radius / drawn) * profile(u);
     bulge_add(bulge, s->vein, (float)height);
-    double share = 2.0 * radius / p->frame.scale / p->widest;
+    double share = 2.0 * radius / p->frame.scale / p->stout;
     if (share > halo_from && u < halo_reach) {
         gsize at = (gsize)y * p->width + x;
         double fall = 1.0 - u / halo_reach,
-               halo = sqrt((share - halo_from) / (1.0 - halo_from)) * fall * fall * (3.0 - 2.0 * fall);
+               halo = sqrt((MIN(share, 1.0) - halo_from) / (1.0 - halo_from)) * fall * fall * (3.0 - 2.0 * fall);
         if (halo > (double)p->halo[at])
             p->halo[at] = (float)halo;
     }

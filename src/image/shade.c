@@ -23,7 +23,7 @@ typedef struct {
     gsize at;
     Vec2 pos;      /* segments */
     double cover;  /* part of the blade here that veins cover */
-    double share;  /* width of the vein here as part of the widest */
+    double share;  /* width of the vein here as part of the stout ones */
     double across; /* 0 on its axis, 1 at its edge */
     double order;
     double middle; /* 0 at a vein, 1 in the middle of a mesh */
@@ -48,7 +48,7 @@ static void spot_vein(const Painter *p, Spot *s, uint32_t x, uint32_t y)
         return;
     const Stroke *k = &p->strokes->v[owner & ~OWNER_BESIDE];
     double t, distance = capsule_distance(&k->shape, vec2(x + 0.5, y + 0.5), &t), radius = capsule_radius(&k->shape, t);
-    s->share = MIN(2.0 * radius / p->frame.scale / p->widest, 1.0);
+    s->share = MIN(2.0 * radius / p->frame.scale / p->stout, 1.0);
     s->order = k->order;
     /* veins of a few pixels have no room for shading across */
     s->across = radius > 1.0 ? mix(0.5, CLAMP((distance + radius) / radius, 0.0, 1.0), MIN(radius - 1.0, 1.0)) : 0.5;
@@ -67,7 +67,7 @@ static Spot spot_at(const Look *l, uint32_t x, uint32_t y)
     return s;
 }
 
-/* How far a vein's colour stands out from the blade's: fully in the widest, hardly in veinlets. */
+/* How far a vein's colour stands out from the blade's: fully in stout ones, hardly in veinlets. */
 static double vein_strength(const Look *l, const Spot *s)
 {
     double base = l->least, by_width = base + (1.0 - base) * sqrt(sqrt(s->share) * s->share);

@@ -110,7 +110,7 @@ const float *painter_height(Painter *p)
 static void adaxial_row(uint32_t y, void *user)
 {
     const Surface *s = user;
-    double scale = 0.125 * s->p->style.relief * s->p->widest;
+    double scale = 0.125 * s->p->style.relief * s->p->stout;
     for (uint32_t x = 0; x < s->p->width; x++) {
         gsize at = (gsize)y * s->p->width + x;
         double v = (double)s->p->vein_height[at], sunk = v > 0.0 ? 0.35 * v * v / (v + scale) : 0.0;
@@ -179,14 +179,14 @@ static void occlude_row(uint32_t y, void *user)
     }
 }
 
-/* At two widths: that of the net's meshes and that of the widest vein. */
+/* At two widths: that of the net's meshes and that of the stout veins. */
 static void paint_occlusion(Painter *p, Plane *plane)
 {
     gsize n = (gsize)p->width * p->rows;
     Surface s = {.p = p, .plane = plane, .z = (float *)painter_height(p)};
     for (gsize i = 0; i < n; i++)
         plane->px[i] = 1.0f;
-    double radius[2] = {0.2 * p->spacing, 0.5 * p->widest};
+    double radius[2] = {0.2 * p->spacing, 0.5 * p->stout};
     s.sum = g_new(float, n);
     s.weight = g_new(float, n);
     for (int i = 0; i < 2; i++) {
@@ -228,7 +228,8 @@ double painter_round_up(double value)
 Plane *paint_surface(Painter *p, MapId id)
 {
     Plane *plane = painter_plane(p, id);
-    double tallest = 0.65 * p->style.relief * p->widest; /* where veins merge they stand higher than either */
+    /* where veins merge they stand higher than either */
+    double tallest = 0.65 * p->style.relief * MIN(p->widest, 2.0 * p->stout);
     Surface s = {.p = p, .plane = plane};
     if (id == MAP_HEIGHT) {
         memcpy(plane->px, painter_height(p), (gsize)p->width * p->rows * sizeof(float));

@@ -19,6 +19,7 @@ struct VenLeaf {
     SimulationCounts counts;
     double length;  /* segments, base to tip, at this step */
     uint32_t growth_steps;
+    const Network *reference; /* of a snapshot: the finished network, whose scale all frames share; borrowed, else NULL */
     Box2 stage;     /* holds the leaf at every step of its run, segments: frames share its scale */
 };
 

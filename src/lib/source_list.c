@@ -42,7 +42,7 @@ gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GE
     char **line = g_strsplit(text, "\n", -1);
     gboolean ok = TRUE;
     for (unsigned i = 0; ok && line[i]; i++) {
-        char *copy = g_strstrip(g_strdup(line[i])), *part[4];
+        char *copy = g_strstrip(g_strdup(line[i])), *part[4] = {NULL};
         uint32_t parts = split(line[i], part);
         double x, y, step = 0.0;
         bool heading = i == 0 && parts >= 2 && g_ascii_strcasecmp(part[0], "x") == 0 && g_ascii_strcasecmp(part[1], "y") == 0;

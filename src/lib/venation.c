@@ -75,36 +75,66 @@ void ven_leaf_free(VenLeaf *leaf)
     g_free(leaf);
 }
 
+/* One growing of the leaf, of which a run has two when snapshots are asked for: the first one learns the scale. */
+typedef struct {
+    const Params *params;
+    const SimulationDef *def;
+    const VenOptions *options;  /* may be NULL */
+    double from, to;            /* the part of the run that it is, for the progress */
+    uint32_t snapshot_every;    /* 0: never */
+    const Network *reference;   /* for the snapshots */
+} Pass;
+
 /* Tells the caller where the run is; FALSE when it wants the run to stop. */
-static gboolean report(const Params *params, const SimulationDef *def, const Simulation *sim, const VenOptions *options)
+static gboolean report(const Pass *pass, const Simulation *sim)
 {
+    if (!pass->options || !pass->options->progress)
+        return TRUE;
     SimulationCounts c = simulation_counts(sim);
     VenProgress p = {.step = c.step, .nodes = c.nodes, .sources = c.sources, .length = simulation_blade(sim)->length,
-                     .done = simulation_done(sim)};
+                     .done = pass->from + (pass->to - pass->from) * simulation_done(sim),
+                     .rehearsal = pass->options->snapshot_every && !pass->snapshot_every};
     VenLeaf *snapshot = NULL;
-    if (options->snapshot_every && (c.step % options->snapshot_every == 0 || c.end != END_RUNNING))
-        p.leaf = snapshot = leaf_new(params, def, sim);
-    gboolean go_on = options->progress(&p, options->user);
+    if (pass->snapshot_every && (c.step % pass->snapshot_every == 0 || c.end != END_RUNNING)) {
+        p.leaf = snapshot = leaf_new(pass->params, pass->def, sim);
+        snapshot->reference = pass->reference;
+    }
+    gboolean go_on = pass->options->progress(&p, pass->options->user);
     ven_leaf_free(snapshot);
     return go_on;
 }
 
-static VenLeaf *run(const Params *params, const SimulationDef *def, const VenOptions *options, GError **error)
+static VenLeaf *run(const Pass *pass, GError **error)
 {
-    Simulation *sim = simulation_new(def, error);
+    Simulation *sim = simulation_new(pass->def, error);
     if (!sim)
         return NULL;
     gboolean more = TRUE, stopped = FALSE;
     while (more && !stopped) {
         more = simulation_step(sim);
-        stopped = options && options->progress && !report(params, def, sim, options);
+        stopped = !report(pass, sim);
     }
     VenLeaf *leaf = NULL;
     if (stopped)
         g_set_error(error, G_IO_ERROR, G_IO_ERROR_CANCELLED, "stopped at step %u", simulation_counts(sim).step);
     else
-        leaf = leaf_new(params, def, sim);
+        leaf = leaf_new(pass->params, pass->def, sim);
     simulation_free(sim);
+    return leaf;
+}
+
+static VenLeaf *run_all(const Params *params, const SimulationDef *def, const VenOptions *options, GError **error)
+{
+    Pass pass = {.params = params, .def = def, .options = options, .to = 1.0};
+    if (!options || !options->snapshot_every || !options->progress)
+        return run(&pass, error);
+    pass.to = 0.3;
+    VenLeaf *first = run(&pass, error), *leaf = NULL;
+    if (first) {
+        pass = (Pass){params, def, options, 0.3, 1.0, options->snapshot_every, first->net};
+        leaf = run(&pass, error);
+    }
+    ven_leaf_free(first);
     return leaf;
 }
 
@@ -118,7 +148,7 @@ VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *opti
     SimulationDef def;
     VenLeaf *leaf = NULL;
     if (outline && settings_simulation(p, outline, seed, options ? options->threads : 0, &def, error)) {
-        leaf = run(p, &def, options, error);
+        leaf = run_all(p, &def, options, error);
         settings_simulation_clear(&def);
     }
     polygon_free(outline);

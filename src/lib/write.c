@@ -65,6 +65,7 @@ static gboolean write_map(const Writer *w, const Plane *plane, const char *name,
 static gboolean write_maps(const Writer *w, const Frame *frame, const gboolean *wanted, gboolean veins_image, GError **error)
 {
     PaintStyle style = settings_style(w->leaf->params, w->leaf->seed, w->leaf->threads);
+    style.reference = w->leaf->reference;
     Painter *painter = painter_new(w->leaf->net, frame, &style);
     gboolean ok = TRUE;
     for (int i = 0; ok && i < MAP_COUNT; i++) {

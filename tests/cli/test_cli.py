@@ -41,8 +41,10 @@ kill_distance = 2
 [texture]
 size = 64
 """
-# Goes on until it is stopped.
+# Grows in no time, but writes frames until it is stopped.
 ENDLESS = """\
+[veins]
+max_steps = 3000
 [growth]
 kind = marginal
 initial_length = 50

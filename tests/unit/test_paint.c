@@ -568,7 +568,93 @@ static void test_normals(void)
     network_free(net);
 }
 
+/* Where two equal veins cross they merge in a rounded rise, higher than either and level on top; a veinlet that joins a
+ * vein leaves it as it is. */
+static void test_merge(void)
+{
+    Network *net = net_new(6, 3, square, 4);
+    net->node[0] = vec2(-15.0, 20.0);
+    net->node[1] = vec2(15.0, 20.0);
+    net->node[2] = vec2(0.0, 5.0);
+    net->node[3] = vec2(0.0, 35.0);
+    net->node[4] = vec2(-8.0, 5.0);
+    net->node[5] = vec2(-8.0, 20.0);
+    static const double width[] = {4.0, 4.0, 0.4};
+    for (uint32_t e = 0; e < 3; e++) {
+        net->tail[e] = 2 * e;
+        net->head[e] = 2 * e + 1;
+        net->vein[e] = e;
+        net->width[e] = width[e];
+    }
+    net->n_veins = 3;
+    Frame f = {401, 401, 10.0, {-20.05, 40.05}}; /* 0,20 is the middle of pixel 200,200 */
+    Painter *p = painter_at(net, &f, 2);
+    Plane *height = painter_paint(p, MAP_HEIGHT), *normal = painter_paint(p, MAP_NORMAL_GL);
+    double single = (double)height->px[200 * 401 + 300];
+    g_assert_cmpfloat(fabs(single - 1.2), <, 0.03); /* the blade is sunk a little */
+    g_assert_cmpfloat(fabs((double)height->px[200 * 401 + 200] - 1.3 * single), <, 0.04);
+    g_assert_cmpfloat((double)height->px[200 * 401 + 200], <=, height->high);
+    g_assert_cmpfloat(fabs((double)height->px[200 * 401 + 120] - single), <, 0.02);
+    g_assert_cmpfloat(fabs((double)normal->px[3 * (200 * 401 + 200)] - 0.5), <, 1e-3);
+    for (uint32_t d = 15; d < 25; d++) { /* no crease along the diagonal: the slope turns slowly there */
+        const float *a = normal->px + 3 * ((200 - d) * 401 + 198 + d), *b = normal->px + 3 * ((198 - d) * 401 + 200 + d);
+        g_assert_cmpfloat(fabs((double)(a[0] - b[0])), <, 0.12);
+    }
+    plane_free(height);
+    plane_free(normal);
+    painter_free(p);
+    network_free(net);
+}
+
 /* ---- looks ---- */
+
+/* Pixels that the margin cuts have the colour of what the blade is there, a vein's when it is a vein. */
+static void test_edge_colour(void)
+{
+    Network *net = net_new(2, 1, square, 4);
+    net->node[1] = vec2(0.0, 30.0);
+    net->head[0] = 1;
+    net->width[0] = 10.0;
+    net->n_veins = 1;
+    Frame f = {120, 120, 2.0, {-30.0, 49.9}}; /* the blade covers four fifths of row 99 */
+    PaintStyle style = paint_style_default();
+    style.variation = 0.0;
+    Painter *p = painter_new(net, &f, &style);
+    Plane *c = painter_paint(p, MAP_BASE_COLOR);
+    g_assert_cmpfloat(fabs((double)p->blade[99 * 120 + 60] - 0.8), <, 1e-5);
+    for (int i = 0; i < 3; i++)
+        g_assert_cmpfloat(fabs((double)c->px[3 * (99 * 120 + 60) + i] / (double)c->px[3 * (90 * 120 + 60) + i] - 1.0), <, 0.03);
+    plane_free(c);
+    painter_free(p);
+    network_free(net);
+}
+
+/* A single short segment that bears all the flow of the base does not pale the veins of the rest. */
+static void test_stout(void)
+{
+    float vein[2][3];
+    for (int k = 0; k < 2; k++) {
+        Network *net = net_new(41, 40, square, 4);
+        for (uint32_t i = 0; i <= 40; i++)
+            net->node[i] = vec2(0.0, 0.9 * i);
+        for (uint32_t e = 0; e < 40; e++) {
+            net->tail[e] = e;
+            net->head[e] = e + 1;
+            net->width[e] = k == 1 && e == 0 ? 20.0 : 2.0;
+            net->order[e] = 4;
+        }
+        net->n_veins = 1;
+        Frame f = {120, 120, 3.0, {-20.0, 40.0}};
+        Painter *p = painter_at(net, &f, 2);
+        Plane *c = painter_paint(p, MAP_BASE_COLOR);
+        memcpy(vein[k], c->px + 3 * (30 * 120 + 60), sizeof vein[k]);
+        plane_free(c);
+        painter_free(p);
+        network_free(net);
+    }
+    for (int i = 0; i < 3; i++)
+        g_assert_cmpfloat(fabs((double)(vein[0][i] - vein[1][i])), <, 0.02);
+}
 
 static double spread(const Plane *c, const float *blade, uint32_t channel)
 {
@@ -749,6 +835,9 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/labels/thin", test_thin_labels);
     g_test_add_func("/paint/labels/priority", test_label_priority);
     g_test_add_func("/paint/normals", test_normals);
+    g_test_add_func("/paint/merge", test_merge);
+    g_test_add_func("/paint/edge-colour", test_edge_colour);
+    g_test_add_func("/paint/stout", test_stout);
     g_test_add_func("/paint/colours", test_colours);
     g_test_add_func("/paint/band", test_band);
     g_test_add_func("/paint/threads", test_threads);
