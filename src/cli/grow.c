@@ -113,6 +113,10 @@ static gboolean read_args(Run *run)
         cli_usage(run->verb, "--frames %s: must be svg or maps", a->frames);
         return FALSE;
     }
+    if (a->every && !run->every) {
+        cli_usage(run->verb, "--every must be at least 1");
+        return FALSE;
+    }
     if (a->frames && !run->every) {
         cli_usage(run->verb, "--frames needs --every");
         return FALSE;

@@ -234,7 +234,7 @@ static gboolean bench_model(const char *path)
     }
     heading(path);
     for (int n = 0; n < 2; n++)
-        for (unsigned threads = 1; threads < 2; threads++) {
+        for (unsigned threads = 1; threads != 2; threads = threads ? 0 : 2) { /* one, then all (0) */
             SimulationDef d;
             if (!settings_simulation(p, leaf, 1, threads, &d, &error)) {
                 fprintf(stderr, "%s\n", error->message);
@@ -243,7 +243,9 @@ static gboolean bench_model(const char *path)
             d.pattern = PATTERN_CLOSED;
             d.neighbourhood = n ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE;
             Result r = run(&d, WITH_INDEX);
-            row(n ? "Urquhart" : "relative", &r);
+            char *name = g_strdup_printf("%s%s", n ? "Urquhart" : "relative", threads ? "" : ", all threads");
+            row(name, &r);
+            g_free(name);
             settings_simulation_clear(&d);
         }
     polygon_free(leaf);

@@ -203,7 +203,7 @@ def test_usage_grow():
         check_refused(run("grow", "small.ini", f"--seed={bad}"), 2, "--seed", "whole number")
     for bad in ("-1", "1025", "two"):
         check_refused(run("grow", "small.ini", "--threads", bad), 2, "--threads")
-    for bad in ("-1", "x", "4294967296"):
+    for bad in ("-1", "0", "x", "4294967296"):
         check_refused(run("grow", "small.ini", "--every", bad), 2, "--every")
     check_refused(run("grow", "small.ini", "--every", "5", "--frames", "gif"), 2, "svg or maps")
     check_refused(run("grow", "small.ini", "--frames", "svg"), 2, "--every")
@@ -305,6 +305,21 @@ def test_input_sources_file():
     write("small.ini", SMALL)
     result = run("grow", "small.ini", "--set", "sources.placement=list", "--set", "sources.file=missing.csv")
     check_refused(result, 3, "missing.csv")
+    listed = ("grow", "small.ini", "--set", "sources.placement=list", "--set", "sources.file=s.csv")
+    for text, place in (("nan,2\n", "s.csv:1"), ("0,20\nl0,20\n", "s.csv:2"), ("1,2,3,4\n", "s.csv:1"), ("0,20,-1\n", "s.csv:1"),
+                        ("0,20,1.5\n", "s.csv:1"), ("", "no source"), ("# nothing\nx,y\n", "s.csv:2"), ("0,500\n", "outside")):
+        write("s.csv", text)
+        check_refused(run(*listed), 3, place)
+    write("s.csv", "x, y, step\n0, 20\n# a comment\n5;30;4\n")
+    result = run(*listed, "--json", "--maps", "none")
+    same(result.status, 0, result.err)
+    same(json.loads(result.out)["sources"]["reached"], 2, "sources reached")
+
+
+def test_grow_bare():
+    write("small.ini", SMALL)
+    result = run("grow", "small.ini", "--set", "sources.density=0", "--json", "--maps", "none")
+    same((result.status, json.loads(result.out)["run"]["end"]), (0, "no source ever found room"))
 
 
 # --- growing -----------------------------------------------------------------------------------------------------
@@ -368,6 +383,19 @@ def test_grow_frames():
     same(run("grow", "small.ini", "--every", "5", "--frames", "maps", "--maps", "opacity", "-o", "m").status, 0)
     if not any(name.startswith("small_000005") and name.endswith(".png") for name in files("m/frames")):
         raise AssertionError(files("m/frames"))
+
+
+def test_grow_frames_share_scale():
+    write("small.ini", SMALL)
+    same(run("grow", "small.ini", "--every", "8", "--frames", "maps", "--maps", "height,age,distance").status, 0)
+    for kind in ("height", "age", "distance"):
+        scales = set()
+        frames = [name for name in files("out/small/frames") if name.endswith(f"_{kind}.png")]
+        for name in frames:
+            with open(os.path.join("out/small/frames", name), "rb") as file:
+                scales.add(tuple(re.findall(rb"tEXt(low|high)\0([-+.e0-9]+)", file.read())))
+        if len(frames) < 3 or len(scales) != 1 or len(next(iter(scales))) != 2:
+            raise AssertionError(f"{kind}: {len(frames)} frames, scales {scales}")
 
 
 def test_grow_from_defaults_file():
