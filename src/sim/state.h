@@ -8,7 +8,7 @@
 #include "geom/zones.h"
 #include "sim/simulation.h"
 
-/* The veins so far. Node arrays are [cap]; 40 bytes a node with the links below, plus its place in the tree. */
+/* The veins so far. Node arrays are [cap]: 28 bytes a node, plus about 40 in the tree. */
 typedef struct {
     uint32_t n, cap;
     Vec2 *pos;         /* in the frame (growth.h) */

@@ -79,6 +79,15 @@ static uint32_t continuation(const Network *net, Chains out, uint32_t v)
     return best;
 }
 
+/* The edge that a node was born at the end of; NONE for a first node. */
+static uint32_t grown_from(const Network *net, Chains in, uint32_t v)
+{
+    uint32_t e = in.first[v];
+    while (e != NONE && net->kind[e] != EDGE_VEIN)
+        e = in.next[e];
+    return e;
+}
+
 static void start_vein(Network *net, uint32_t e, uint8_t order)
 {
     net->vein[e] = net->n_veins++;
@@ -91,9 +100,7 @@ static void assign_orders(Network *net, Chains in, Chains out, const uint32_t *r
     double least = dmath_pow(primary_width, exponent);
     net->n_veins = 0;
     for (uint32_t v = 0; v < net->n_nodes; v++) {
-        uint32_t main = continuation(net, out, v), entry = in.first[v];
-        while (entry != NONE && net->kind[entry] != EDGE_VEIN)
-            entry = in.next[entry];
+        uint32_t main = continuation(net, out, v), entry = grown_from(net, in, v);
         for (uint32_t e = out.first[v]; e != NONE; e = out.next[e]) {
             if (net->kind[e] != EDGE_VEIN)
                 continue;
@@ -137,9 +144,7 @@ static void assign_ranks(Network *net, Chains in, Chains out, double ratio)
     for (uint32_t e = 0; e < net->n_edges; e++)
         widest = MAX(widest, net->width[e]);
     for (uint32_t v = 0; v < net->n_nodes; v++) {
-        uint32_t entry = in.first[v];
-        while (entry != NONE && net->kind[entry] != EDGE_VEIN)
-            entry = in.next[entry];
+        uint32_t entry = grown_from(net, in, v);
         for (uint32_t e = out.first[v]; e != NONE; e = out.next[e]) {
             if (net->kind[e] != EDGE_VEIN)
                 continue;
