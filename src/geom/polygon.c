@@ -196,14 +196,28 @@ bool polygon_contains(const Polygon *p, Vec2 q)
     return cell == CELL_BOUNDARY ? slab_contains(p, q) : cell == CELL_INSIDE;
 }
 
-double polygon_depth(const Polygon *p, Vec2 q)
+Vec2 polygon_nearest(const Polygon *p, Vec2 q, uint32_t *edge)
 {
     double least = HUGE_VAL;
+    Vec2 nearest = p->v[0];
     for (uint32_t i = 0; i < p->n; i++) {
-        double d = segment_dist2(p->v[i], p->v[i + 1 < p->n ? i + 1 : 0], q);
-        least = d < least ? d : least;
+        Vec2 a = p->v[i], b = p->v[i + 1 < p->n ? i + 1 : 0];
+        Vec2 c = vec_lerp(a, b, segment_nearest(a, b, q));
+        double d = vec_dist2(c, q);
+        if (!(d < least))
+            continue;
+        least = d;
+        nearest = c;
+        if (edge)
+            *edge = i;
     }
-    return polygon_contains(p, q) ? sqrt(least) : -sqrt(least);
+    return nearest;
+}
+
+double polygon_depth(const Polygon *p, Vec2 q)
+{
+    double d = vec_dist(polygon_nearest(p, q, NULL), q);
+    return polygon_contains(p, q) ? d : -d;
 }
 
 Vec2 polygon_centroid(const Polygon *p)

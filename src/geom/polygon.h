@@ -31,6 +31,9 @@ bool polygon_contains(const Polygon *p, Vec2 q);
 /* Signed distance to the boundary, positive inside. O(n). */
 double polygon_depth(const Polygon *p, Vec2 q);
 
+/* The boundary point nearest to q (of several the one on the first edge); *edge, unless NULL, receives its edge. O(n). */
+Vec2 polygon_nearest(const Polygon *p, Vec2 q, uint32_t *edge);
+
 /* Finds two edges i < j (edge i runs from vertex i to the next) that touch or cross other than at a shared vertex.
  * O(n log n) expected. */
 bool polygon_crossing(const Polygon *p, uint32_t *i, uint32_t *j);

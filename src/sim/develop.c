@@ -92,7 +92,7 @@ static bool grow(Simulation *s, uint32_t v, Vec2 direction)
 {
     double norm = sqrt(vec_norm2(direction)), unit = s->blade->unit;
     Vec2 p = vec_add(s->veins.pos[v], vec_scale(direction, unit / norm)); /* eq. 1, D = 1 */
-    if (quadtree_any_within(&s->veins.tree, p, crowding * unit) || !blade_near(s->blade, p, unit))
+    if (quadtree_any_within(&s->veins.tree, p, crowding * unit) || !blade_admits(s->blade, p))
         return false;
     uint32_t child = veins_add(&s->veins, p, v, s->blade->step);
     if (s->blade->moving)

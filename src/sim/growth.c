@@ -193,6 +193,25 @@ static void refresh(Blade *b)
     b->box = (Box2){u.x0 * b->scale, u.y0 * b->scale, u.x1 * b->scale, u.y1 * b->scale};
 }
 
+/* The outline with points at least every `longest`. */
+static Polygon *cut_edges(const Polygon *p, double longest)
+{
+    GArray *v = g_array_new(FALSE, FALSE, sizeof(Vec2));
+    for (uint32_t i = 0; i < p->n; i++) {
+        Vec2 a = p->v[i], b = p->v[i + 1 < p->n ? i + 1 : 0];
+        uint32_t parts = MAX(1, (uint32_t)ceil(vec_dist(a, b) / longest));
+        for (uint32_t k = 0; k < parts; k++) {
+            Vec2 q = vec_lerp(a, b, (double)k / (double)parts);
+            g_array_append_val(v, q);
+        }
+    }
+    Polygon *fine = polygon_new((Vec2 *)v->data, v->len);
+    g_array_free(v, TRUE);
+    return fine;
+}
+
+static void find_back(Blade *b);
+
 Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
 {
     if (!check(def, error))
@@ -205,6 +224,7 @@ Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
         b->def.rate_x = g_memdup2(def->rate_x, sizeof(double) * 2 * def->n_rate_x);
         b->def.rate_y = g_memdup2(def->rate_y, sizeof(double) * 2 * def->n_rate_y);
         b->last_step = def->steps;
+        b->leaf = b->fine = cut_edges(leaf, 0.005);
         b->table = table_new(b);
     } else {
         b->def.rate_x = b->def.rate_y = NULL;
@@ -217,6 +237,8 @@ Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
     b->last_length = b->length;
     if (b->moving)
         b->last_shape = blade_outline(b);
+    if (def->kind == GROWTH_MARGINAL)
+        find_back(b);
     b->step = 0;
     refresh(b);
     b->widest = box_union(b->widest, b->box);
@@ -232,6 +254,8 @@ void blade_free(Blade *b)
     g_free((gpointer)b->def.rate_x);
     g_free((gpointer)b->def.rate_y);
     g_free(b->table);
+    g_free(b->back);
+    polygon_free(b->fine);
     g_free(b);
 }
 
@@ -241,16 +265,75 @@ void blade_advance(Blade *b)
         refresh(b);
 }
 
-bool blade_contains(const Blade *b, Vec2 p)
+/* ---- what is in the blade ---- */
+
+/* Edges of the outline that turn their back on the base: on a ray from there the blade begins anew behind them. */
+static void find_back(Blade *b)
 {
-    return b->moving ? polygon_contains(b->shape, p) : polygon_contains(b->leaf, vec_scale(p, 1.0 / b->scale));
+    const Polygon *p = b->leaf;
+    b->back = g_malloc_n(p->n, sizeof *b->back);
+    for (uint32_t i = 0; i < p->n; i++) {
+        Vec2 from = p->v[i], to = p->v[i + 1 < p->n ? i + 1 : 0];
+        if (vec_cross(from, to) < 0.0) {
+            b->back[b->n_back][0] = from;
+            b->back[b->n_back++][1] = to;
+        }
+    }
 }
 
-bool blade_near(const Blade *b, Vec2 p, double by)
+/* Whether none of those edges sweeps over point u of the outline (leaf coordinates) while the margin moves on and u, seen from it, falls back
+ * towards the base to `part` of its distance. */
+static bool stays(const Blade *b, Vec2 u, double part)
 {
+    for (uint32_t i = 0; i < b->n_back; i++) {
+        Vec2 from = b->back[i][0], to = b->back[i][1];
+        double f = vec_cross(from, u), t = vec_cross(to, u);
+        if ((f > 0.0) == (t > 0.0))
+            continue;
+        double hit = vec_dot(vec_lerp(from, to, f / (f - t)), u) / vec_norm2(u);
+        if (hit > part && hit <= 1.0)
+            return false;
+    }
+    return true;
+}
+
+static bool contains_at(const Blade *b, Vec2 p, double scale)
+{
+    Vec2 u = vec_scale(p, 1.0 / scale);
+    return polygon_contains(b->leaf, u) && (b->n_back == 0 || stays(b, u, scale / b->last_length));
+}
+
+bool blade_contains(const Blade *b, Vec2 p) { return b->moving ? polygon_contains(b->shape, p) : contains_at(b, p, b->scale); }
+
+bool blade_admits(const Blade *b, Vec2 p)
+{
+    /* a segment at the end of growth: in the isogonic frame that is 1; nonuniform growth would carry off what is outside */
+    const double by = 1.0;
     if (blade_contains(b, p))
         return true;
-    if (box_dist2(b->box, p) > by * by)
+    if (box_dist2(b->box, p) > by * by || (b->moving && b->step < b->last_step))
         return false;
-    return b->moving ? polygon_depth(b->shape, p) >= -by : polygon_depth(b->leaf, vec_scale(p, 1.0 / b->scale)) * b->scale >= -by;
+    double scale = b->moving ? 1.0 : b->scale;
+    Vec2 u = vec_scale(p, 1.0 / scale);
+    uint32_t edge;
+    Vec2 rim = polygon_nearest(b->moving ? b->shape : b->leaf, u, &edge);
+    if (vec_dist2(rim, u) * scale * scale > by * by)
+        return false;
+    if (b->n_back == 0 || b->scale >= b->last_length)
+        return true;
+    Vec2 from = b->leaf->v[edge], to = b->leaf->v[edge + 1 < b->leaf->n ? edge + 1 : 0];
+    return vec_cross(from, to) >= 0.0 && stays(b, rim, b->scale / b->last_length);
+}
+
+uint32_t blade_step_passed(const Blade *b, Vec2 p)
+{
+    uint32_t lo = 0, hi = b->last_step;
+    while (lo < hi) {
+        uint32_t mid = lo + (hi - lo) / 2;
+        if (contains_at(b, p, blade_scale_at(b, mid)))
+            hi = mid;
+        else
+            lo = mid + 1;
+    }
+    return lo;
 }

@@ -40,9 +40,12 @@ struct Blade {
     double area;              /* segments² */
     Box2 box, widest;         /* of the blade in the frame, now and over the whole growth */
     bool moving;              /* material points move in the frame (nonuniform) */
-    const Polygon *leaf;      /* the outline in leaf coordinates; borrowed */
+    const Polygon *leaf;      /* the outline in leaf coordinates; borrowed, but `fine` for nonuniform growth */
+    Polygon *fine;            /* the outline with long edges cut up, as growth bends them */
     Polygon *shape, *last_shape; /* nonuniform: the outline in the frame, now and at the end */
     struct GrowthTable *table;
+    Vec2 (*back)[2]; /* marginal: edges of the outline that turn their back on the base, [n_back]; see blade_contains */
+    uint32_t n_back;
     GrowthDef def;
 };
 
@@ -53,13 +56,19 @@ void blade_free(Blade *b);
 /* One step of growth; does nothing but count once growth has ended. */
 void blade_advance(Blade *b);
 
+/* Whether p lies in the blade and stays there. Where the base doesn't see the whole outline (a basal lobe behind a sinus, a hooked tooth), the
+ * margin of marginal growth sweeps over some points twice; such a point belongs to the blade once the margin has passed it for good. So a
+ * point that is in the blade at one step is in it at all later ones. */
 bool blade_contains(const Blade *b, Vec2 p);
 
-/* Whether p lies in the blade or not farther than `by` outside. */
-bool blade_near(const Blade *b, Vec2 p, double by);
+/* Whether a vein node may be born at p: in the blade, or so little off it that it never is more than a segment outside. */
+bool blade_admits(const Blade *b, Vec2 p);
 
 /* Leaf lengths to frame at an earlier step (not for nonuniform growth). */
 double blade_scale_at(const Blade *b, uint32_t step);
+
+/* Marginal growth and none: the first step at which blade_contains(p), or last_step when it never does. */
+uint32_t blade_step_passed(const Blade *b, Vec2 p);
 
 /* Leaf length at a step, segments. */
 double blade_length_at(const Blade *b, uint32_t step);

@@ -225,24 +225,10 @@ static gint by_step(gconstpointer a, gconstpointer b, gpointer unused)
     return p->step < q->step ? -1 : p->step > q->step;
 }
 
-/* First step at which the growing margin has passed p. */
-static uint32_t step_passed(const Blade *b, Vec2 p)
-{
-    uint32_t lo = 0, hi = b->last_step;
-    while (lo < hi) {
-        uint32_t mid = lo + (hi - lo) / 2;
-        if (polygon_contains(b->leaf, vec_scale(p, 1.0 / blade_scale_at(b, mid))))
-            hi = mid;
-        else
-            lo = mid + 1;
-    }
-    return lo;
-}
-
 static gboolean prepare_margin(Simulation *s, GError **error)
 {
     Box2 box = s->blade->widest;
-    double scale = 1.0 / blade_scale_at(s->blade, s->blade->last_step);
+    double scale = 1.0 / s->blade->last_length;
     double count = s->def.density * (box.x1 - box.x0) * (box.y1 - box.y0);
     if (s->def.growth.kind != GROWTH_MARGINAL && s->def.growth.kind != GROWTH_NONE) {
         g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
@@ -266,7 +252,7 @@ static gboolean prepare_margin(Simulation *s, GError **error)
         if (!polygon_contains(s->def.leaf, vec_scale(p, scale)) ||
             zones_any_within(&grid, (Vec2 *)place->data, p, s->def.birth_distance_sources))
             continue;
-        ListedSource it = {p, step_passed(s->blade, p)};
+        ListedSource it = {p, blade_step_passed(s->blade, p)};
         zones_add(&grid, p, (Box2){p.x, p.y, p.x, p.y});
         g_array_append_val(place, p);
         g_array_append_val(set, it);

@@ -257,7 +257,7 @@ static bool try_child(Plain *w, uint32_t v, Vec2 towards)
 {
     double unit = w->blade->unit;
     Vec2 p = vec_add(w->pos[v], vec_scale(towards, unit / sqrt(vec_norm2(towards))));
-    if (node_within(w, p, 0.1 * unit) || !blade_near(w->blade, p, unit))
+    if (node_within(w, p, 0.1 * unit) || !blade_admits(w->blade, p))
         return false;
     add_node(w, p, w->blade->moving ? blade_material(w->blade, p) : p, v);
     w->n_fresh++;
