@@ -173,6 +173,16 @@ static gboolean read_params(Run *run, GError **error)
     return good;
 }
 
+/* Frames of maps when no map is wanted would be an empty folder. */
+static gboolean frames_are_empty(const Run *run)
+{
+    char *maps = ven_params_get(run->params, "texture.maps");
+    g_strstrip(maps);
+    gboolean none = !*maps || g_str_equal(maps, "none");
+    g_free(maps);
+    return run->frame_maps && none;
+}
+
 /* Runs on the thread that waits for signals, when there is no time to wait for the run. */
 static void abandon(gpointer user)
 {
@@ -298,6 +308,10 @@ static int carry_out(Run *run)
     gint64 begun = g_get_monotonic_time();
     if (!read_params(run, &error))
         return report(error, TRUE);
+    if (frames_are_empty(run)) {
+        cli_usage(run->verb, "--frames maps needs a map: --maps is none");
+        return EXIT_USAGE;
+    }
     run->interrupt = interrupt_new(abandon, run);
     interrupt_hold(run->interrupt); /* until the folder is made */
     run->output = output_new(run->dir, &error);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "param/suggest.h"
+
 G_DEFINE_QUARK(settings-error-quark, settings_error)
 
 /* ---- outline ---- */
@@ -185,11 +187,23 @@ PaintStyle settings_style(const Params *p, uint64_t seed, unsigned threads)
     return s;
 }
 
-static char *known_maps(void)
+/* What there is instead of a map that there isn't. */
+static char *known_maps(const char *word)
 {
+    const char *known[MAP_COUNT + 2] = {"all", "none"};
     GString *s = g_string_new("all, none");
-    for (int i = 0; i < MAP_COUNT; i++)
-        g_string_append_printf(s, ", %s", paint_map_info((MapId)i)->name);
+    for (int i = 0; i < MAP_COUNT; i++) {
+        known[i + 2] = paint_map_info((MapId)i)->name;
+        g_string_append_printf(s, ", %s", known[i + 2]);
+    }
+    const char *near = suggest_nearest(word, known, G_N_ELEMENTS(known));
+    if (near) {
+        char *first = g_strdup_printf("did you mean '%s'? There are ", near);
+        g_string_prepend(s, first);
+        g_free(first);
+    } else {
+        g_string_prepend(s, "there are ");
+    }
     return g_string_free(s, FALSE);
 }
 
@@ -208,8 +222,8 @@ gboolean settings_maps(const Params *p, gboolean *wanted, GError **error)
         } else if (id >= 0) {
             wanted[id] = TRUE;
         } else {
-            char *known = known_maps();
-            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [texture] maps: no map is called '%s'; there are %s",
+            char *known = known_maps(*w);
+            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [texture] maps: no map is called '%s'; %s",
                         params_origin(p, PARAM_TEXTURE_MAPS), *w, known);
             g_free(known);
             ok = FALSE;

@@ -207,6 +207,8 @@ def test_usage_grow():
         check_refused(run("grow", "small.ini", "--every", bad), 2, "--every")
     check_refused(run("grow", "small.ini", "--every", "5", "--frames", "gif"), 2, "svg or maps")
     check_refused(run("grow", "small.ini", "--frames", "svg"), 2, "--every")
+    check_refused(run("grow", "small.ini", "--every", "5", "--frames", "maps", "--maps", "none"), 2, "--frames maps")
+    check_refused(run("grow", "small.ini", "--maps", "base_colour"), 3, "did you mean 'base_color'?")
     check_refused(run("grow", "small.ini", "--set", "veins.pattern"), 2, "section.key=value")
     for bad in ("a/b", "", ".hidden", "a\nb"):
         check_refused(run("grow", "small.ini", "--name", bad), 2, "--name")
