@@ -9,6 +9,9 @@
  * above 255 even if 8 is asked for). GError in G_FILE_ERROR. Same bytes from run to run. */
 gboolean image_write_png(const Plane *p, const char *path, int depth, const Metadata *meta, GError **error);
 
+/* The same PNG in memory, for formats that embed images. */
+GBytes *image_png_bytes(const Plane *p, int depth, const Metadata *meta);
+
 /* Writes half or float, one part, ZIP compression; channels named Y or R,G,B(,A). */
 gboolean image_write_exr(const Plane *p, const char *path, gboolean half, const Metadata *meta, GError **error);
 

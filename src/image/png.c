@@ -15,6 +15,7 @@ typedef struct {
     png_structp png;
     png_infop info;
     Staged file;
+    GByteArray *memory; /* written to instead of the file, when not NULL */
     Encoder encoder;
     GPtrArray *strings; /* keys and values of the text chunks */
     GArray *texts;      /* png_text */
@@ -40,7 +41,9 @@ static void on_warning(png_structp png, png_const_charp message)
 static void on_write(png_structp png, png_bytep data, png_size_t n)
 {
     Writer *w = png_get_io_ptr(png);
-    if (fwrite(data, 1, n, w->file.file) != n) {
+    if (w->memory)
+        g_byte_array_append(w->memory, data, (guint)n);
+    else if (fwrite(data, 1, n, w->file.file) != n) {
         w->code = errno != 0 ? errno : EIO;
         png_error(png, "write failed");
     }
@@ -154,29 +157,45 @@ static void set_failure(const Writer *w, const char *path, GError **error)
                     w->message != NULL ? w->message : "libpng failed");
 }
 
+/* The whole image to the writer's file or memory. */
+static gboolean write_image(Writer *w, const Plane *p, int depth, const Metadata *meta)
+{
+    encoder_init(&w->encoder, p, depth);
+    w->strings = g_ptr_array_new_with_free_func(g_free);
+    w->texts = g_array_new(FALSE, TRUE, sizeof(png_text));
+    collect_texts(w, p, meta);
+    w->row = g_malloc((gsize)p->width * w->encoder.channels * (gsize)(w->encoder.depth / 8));
+    w->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, w, on_error, on_warning);
+    if (w->png != NULL)
+        w->info = png_create_info_struct(w->png);
+    gboolean ok = w->info != NULL && emit(w, p);
+    png_destroy_write_struct(&w->png, &w->info);
+    encoder_clear(&w->encoder);
+    g_array_free(w->texts, TRUE);
+    g_ptr_array_free(w->strings, TRUE);
+    g_free(w->row);
+    return ok;
+}
+
 gboolean image_write_png(const Plane *p, const char *path, int depth, const Metadata *meta, GError **error)
 {
     Writer w = {0};
     if (!staged_open(&w.file, path, error))
         return FALSE;
-    encoder_init(&w.encoder, p, depth);
-    w.strings = g_ptr_array_new_with_free_func(g_free);
-    w.texts = g_array_new(FALSE, TRUE, sizeof(png_text));
-    collect_texts(&w, p, meta);
-    w.row = g_malloc((gsize)p->width * w.encoder.channels * (gsize)(w.encoder.depth / 8));
-    w.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w, on_error, on_warning);
-    if (w.png != NULL)
-        w.info = png_create_info_struct(w.png);
-    gboolean ok = w.info != NULL && emit(&w, p);
+    gboolean ok = write_image(&w, p, depth, meta);
     if (!ok) {
         set_failure(&w, path, error);
         staged_abort(&w.file);
     }
-    png_destroy_write_struct(&w.png, &w.info);
-    encoder_clear(&w.encoder);
-    g_array_free(w.texts, TRUE);
-    g_ptr_array_free(w.strings, TRUE);
-    g_free(w.row);
     g_free(w.message);
     return ok && staged_commit(&w.file, error);
+}
+
+GBytes *image_png_bytes(const Plane *p, int depth, const Metadata *meta)
+{
+    Writer w = {.memory = g_byte_array_new()};
+    if (!write_image(&w, p, depth, meta))
+        g_error("libpng refused an image: %s", w.message ? w.message : "no reason given"); /* there is no file that could fail */
+    g_free(w.message);
+    return g_byte_array_free_to_bytes(w.memory);
 }

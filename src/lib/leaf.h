@@ -2,6 +2,7 @@
 #ifndef LIB_LEAF_H
 #define LIB_LEAF_H
 
+#include "image/paint.h"
 #include "param/params.h"
 #include "sim/network.h"
 #include "sim/simulation.h"
@@ -25,5 +26,8 @@ struct VenLeaf {
 
 /* FNV-1a over the network's bytes: nodes, edges, widths, orders. One number that changes when anything does. */
 uint64_t leaf_hash(const Network *net);
+
+/* Where `box` lies in maps of the size and shape that [texture] asks for. */
+Frame leaf_frame(const VenLeaf *leaf, Box2 box);
 
 #endif

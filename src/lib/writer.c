@@ -1,0 +1,87 @@
+#include "lib/writer.h"
+
+#include <errno.h>
+#include <glib/gstdio.h>
+
+#include "geom/parallel.h"
+#include "lib/settings.h"
+
+void writer_init(Writer *w, const VenLeaf *leaf, const char *dir, const char *name)
+{
+    static const char *const key[WRITER_META] = {"Software", "Title", "Source", "Seed", "Parameters"};
+    *w = (Writer){.leaf = leaf, .dir = dir, .name = name};
+    w->value[0] = g_strdup("Venation " VENATION_VERSION);
+    w->value[1] = g_strdup(params_text(leaf->params, PARAM_LEAF_TITLE));
+    w->value[2] = g_strdup(params_text(leaf->params, PARAM_LEAF_SOURCE));
+    w->value[3] = g_strdup_printf("%" G_GUINT64_FORMAT, (guint64)leaf->seed);
+    w->value[4] = params_to_file(leaf->params);
+    w->meta = (Metadata){WRITER_META, key, (const char *const *)w->value};
+    w->depth = params_choice(leaf->params, PARAM_TEXTURE_DEPTH) ? 16 : 8;
+    w->exr = params_choice(leaf->params, PARAM_TEXTURE_EXR);
+}
+
+void writer_clear(Writer *w)
+{
+    for (int i = 0; i < WRITER_META; i++)
+        g_free(w->value[i]);
+}
+
+gboolean writer_make_dir(const Writer *w, GError **error)
+{
+    if (g_mkdir_with_parents(w->dir, 0777) == 0)
+        return TRUE;
+    int e = errno;
+    g_set_error(error, G_FILE_ERROR, g_file_error_from_errno(e), "can't make the folder '%s': %s", w->dir, g_strerror(e));
+    return FALSE;
+}
+
+char *writer_path(const Writer *w, const char *suffix)
+{
+    char *file = g_strdup_printf("%s%s", w->name, suffix), *path = g_build_filename(w->dir, file, NULL);
+    g_free(file);
+    return path;
+}
+
+/* One map in up to two formats, which are independent and so written side by side. */
+typedef struct {
+    const Writer *writer;
+    const Plane *plane;
+    const char *name;
+    int depth;
+    GError *error[2];
+} MapJob;
+
+static void write_map_format(uint32_t first, uint32_t last, void *user)
+{
+    MapJob *job = user;
+    for (uint32_t i = first; i < last; i++) {
+        if (i == 1 && !job->writer->exr)
+            continue;
+        char *suffix = g_strdup_printf("_%s.%s", job->name, i == 0 ? "png" : "exr"), *path = writer_path(job->writer, suffix);
+        if (i == 0)
+            image_write_png(job->plane, path, job->depth, &job->writer->meta, &job->error[i]);
+        else
+            image_write_exr(job->plane, path, job->writer->exr == 1, &job->writer->meta, &job->error[i]);
+        g_free(path);
+        g_free(suffix);
+    }
+}
+
+gboolean writer_map(const Writer *w, const Plane *plane, const char *map, int depth, GError **error)
+{
+    MapJob job = {.writer = w, .plane = plane, .name = map, .depth = depth};
+    parallel_for(w->leaf->threads, 2, 1, write_map_format, &job);
+    if (job.error[0] && job.error[1])
+        g_clear_error(&job.error[1]);
+    GError *failed = job.error[0] ? job.error[0] : job.error[1];
+    if (failed)
+        g_propagate_error(error, failed);
+    return failed == NULL;
+}
+
+Painter *writer_painter(const Writer *w, const Frame *frame)
+{
+    PaintStyle style = settings_style(w->leaf->params, w->leaf->seed, w->leaf->threads);
+    style.reference = w->leaf->reference;
+    return painter_new(w->leaf->net, frame, &style);
+}
