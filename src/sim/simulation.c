@@ -25,7 +25,7 @@ SimulationDef simulation_def_default(void)
 const char *end_reason_text(EndReason r)
 {
     static const char *const text[] = {"running", "every source was reached", "no vein can reach the sources left", "veins.max_steps",
-                                       "no source ever found room"};
+                                       "no source ever found room", "read from a file"};
     return text[r];
 }
 

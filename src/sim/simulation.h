@@ -58,6 +58,7 @@ typedef enum {
     END_UNREACHED,  /* growth has ended and none of the sources left can be reached */
     END_MAX_STEPS,
     END_BARE,       /* growth has ended and no source ever found room */
+    END_LOADED,     /* there was no run: the network was read from a file */
 } EndReason;
 const char *end_reason_text(EndReason r);
 

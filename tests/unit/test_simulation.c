@@ -460,6 +460,29 @@ static void test_kind(gconstpointer data)
     polygon_free(leaf[1]);
 }
 
+/* With a large kill distance veins stop far apart: joined at twice the kill distance, all arrivals but those of close kin are. */
+static void test_join_distance(void)
+{
+    Polygon *leaf = ovate();
+    uint32_t joins[3];
+    const double distance[3] = {0.0, 2.5, 8.0};
+    for (int i = 0; i < 3; i++) {
+        SimulationDef d = small(leaf, GROWTH_NONE, PATTERN_CLOSED, NEIGHBOURHOOD_RELATIVE);
+        SimulationCounts c;
+        d.growth.initial_length = 120;
+        d.kill_distance = 4;
+        d.birth_distance_sources = 5;
+        d.birth_distance_veins = 5;
+        d.join_distance = distance[i];
+        whole_run(&d, &c);
+        joins[i] = c.joins;
+    }
+    g_assert_cmpuint(joins[0], ==, 0);
+    g_assert_cmpuint(joins[1], <, joins[2]);
+    g_assert_cmpuint(joins[2], >, 20);
+    polygon_free(leaf);
+}
+
 static void test_margin(void)
 {
     Polygon *leaf[2] = {ovate(), lobed()};
@@ -845,6 +868,7 @@ int main(int argc, char **argv)
     g_test_add_data_func("/simulation/isogonic", GUINT_TO_POINTER(GROWTH_ISOGONIC), test_kind);
     g_test_add_data_func("/simulation/nonuniform", GUINT_TO_POINTER(GROWTH_NONUNIFORM), test_kind);
     g_test_add_data_func("/simulation/none", GUINT_TO_POINTER(GROWTH_NONE), test_kind);
+    g_test_add_func("/simulation/join-distance", test_join_distance);
     g_test_add_func("/simulation/margin", test_margin);
     g_test_add_func("/simulation/seeds", test_seeds);
     g_test_add_func("/simulation/large", test_large);
