@@ -68,6 +68,10 @@ VEN_API gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *nam
  * for. The step has six digits or more. */
 VEN_API gboolean ven_write_frame(const VenLeaf *leaf, const char *dir, const char *name, gboolean maps, GError **error);
 
+/* A leaf from a network that was grown before or drawn: a GraphML file with node positions in segments, base at 0,0, and the margin; see
+ * the README. `params` give widths where the file has none, the maps, and what is shaped. */
+VEN_API VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed, GError **error);
+
 /* The run record as JSON; free it with g_free. */
 VEN_API char *ven_leaf_record(const VenLeaf *leaf);
 
@@ -87,6 +91,28 @@ typedef struct {
 } VenEdge;
 
 VEN_API void ven_leaf_edge(const VenLeaf *leaf, uint32_t edge, VenEdge *out);
+
+/* A bent leaf (Hong 2005): its larger veins are a skeleton that [pose] bends, the blade between them is interpolated. */
+typedef struct VenShape VenShape;
+
+/* Shapes a leaf as its parameters ask ([mesh], [pose], [export]). The leaf must outlive the shape. */
+VEN_API VenShape *ven_shape(const VenLeaf *leaf, GError **error);
+VEN_API void ven_shape_free(VenShape *shape);
+
+/* Writes the models that export.models names, with the maps they refer to: <name>.glb, .obj and .mtl, .ply, .pov and .inc; with several
+ * mesh.levels <name>_lod1.glb and so on; with a rig <name>_rigged.glb; with pose.keyframes <name>_animated.glb; and the record. */
+VEN_API gboolean ven_shape_write(const VenShape *shape, const char *dir, const char *name, GError **error);
+
+/* The run record with what was shaped; free it with g_free. */
+VEN_API char *ven_shape_record(const VenShape *shape);
+
+/* The bent blade: vein sequences of the skeleton; vertices in metres and their unit normals, +z the sunny side; triangles seen
+ * counter-clockwise from there. `normal` may be NULL. */
+VEN_API uint32_t ven_shape_veins(const VenShape *shape);
+VEN_API uint32_t ven_shape_vertices(const VenShape *shape);
+VEN_API uint32_t ven_shape_triangles(const VenShape *shape);
+VEN_API void ven_shape_vertex(const VenShape *shape, uint32_t vertex, double place[3], double normal[3]);
+VEN_API void ven_shape_triangle(const VenShape *shape, uint32_t triangle, uint32_t vertex[3]);
 
 G_END_DECLS
 

@@ -9,7 +9,8 @@ static char *argument(const char *description)
 {
     if (strchr(description, '|'))
         return g_strdelimit(g_strdup(description), "|", ' ');
-    if (strcmp(description, "DIR") == 0 || strcmp(description, "LIST") == 0)
+    static const char *const kind[] = {"DIR", "LIST", "MODELS", "PARAMS", NULL};
+    if (g_strv_contains(kind, description))
         return g_strdup_printf("@%s", description);
     return g_strdup(strchr(description, '=') ? "@SET" : "");
 }
@@ -96,6 +97,11 @@ static const char script[] =
     "        compopt -o filenames 2>/dev/null\n"
     "        mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"; compgen -f -X '!*.ini' -- \"$cur\")\n"
     "        return ;;\n"
+    "    '@PARAMS|NETWORK')\n"
+    "        compopt -o filenames 2>/dev/null\n"
+    "        mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"; compgen -f -X '!*.ini' -- \"$cur\";\n"
+    "            compgen -f -X '!*.graphml' -- \"$cur\")\n"
+    "        return ;;\n"
     "    @SET)\n"
     "        if [[ $cur == *=* ]]; then\n"
     "            _venation_reply \"$(_venation_values \"${cur%%=*}\")\" \"${cur#*=}\"\n"
@@ -105,10 +111,11 @@ static const char script[] =
     "            mapfile -t COMPREPLY < <(compgen -S = -W \"$_venation_keys\" -- \"$cur\")\n"
     "        fi\n"
     "        return ;;\n"
-    "    @LIST) # names parted by commas\n"
-    "        local before=\n"
+    "    @LIST | @MODELS) # names parted by commas\n"
+    "        local before= names=$_venation_maps\n"
+    "        [[ $1 == @MODELS ]] && names='all none glb obj ply pov'\n"
     "        [[ $cur == *,* ]] && before=${cur%,*},\n"
-    "        mapfile -t COMPREPLY < <(compgen -P \"$before\" -W \"$_venation_maps\" -- \"${cur##*,}\")\n"
+    "        mapfile -t COMPREPLY < <(compgen -P \"$before\" -W \"$names\" -- \"${cur##*,}\")\n"
     "        return ;;\n"
     "    @KEY) words=\"$_venation_keys $(cut -d. -f1 <<<\"$_venation_keys\" | uniq)\" ;;\n"
     "    @VERB) words=$_venation_verbs ;;\n"

@@ -1,4 +1,6 @@
 /* GraphML (graphml.graphdrawing.org) with typed attributes, which NetworkX and igraph read as it is. */
+#include <math.h>
+
 #include "export/export.h"
 #include "export/sink.h"
 
@@ -9,11 +11,49 @@ static const struct {
     {"k", "edge", "kind", "string"}, {"o", "edge", "order", "int"},     {"r", "edge", "rank", "int"},
     {"v", "edge", "vein", "int"},    {"w", "edge", "width", "double"},  {"f", "edge", "flow", "double"},
     {"b", "edge", "birth", "int"},   {"l", "edge", "length", "double"},
+    {"m", "graph", "margin", "string"}, {"s", "graph", "steps", "int"},
 };
 
 /* Strings of known length: a leaf may have a million edges. */
 #define PUT(s, text) g_string_append_len(s, text, sizeof(text) - 1)
 #define NEXT(key) "</data><data key=\"" key "\">"
+
+/* The number that sink_millionths writes, up to 4e9: so that a length is that between the nodes as they stand in the file, and the file is the
+ * same again when it is read and written. */
+static double rounded(double value)
+{
+    double scaled = value * 1e6, whole = rint(scaled), over = scaled - whole;
+    if (fabs(over) == 0.5) { /* the exact product may lie on the other side of the half */
+        double rest = fma(value, 1e6, -scaled);
+        if (over > 0.0 ? rest > 0.0 : rest < 0.0)
+            whole += over > 0.0 ? 1.0 : -1.0;
+    }
+    return whole / 1e6;
+}
+
+static double edge_length(const Network *net, uint32_t e)
+{
+    Vec2 a = net->node[net->tail[e]], b = net->node[net->head[e]];
+    return vec_dist(vec2(rounded(a.x), rounded(a.y)), vec2(rounded(b.x), rounded(b.y)));
+}
+
+static void put_graph(const Network *net, GString *s)
+{
+    if (net->margin != NULL) {
+        PUT(s, "<data key=\"m\">");
+        for (uint32_t i = 0; i < net->margin->n; i++) {
+            if (i > 0)
+                g_string_append_c(s, ' ');
+            sink_millionths(s, net->margin->v[i].x);
+            g_string_append_c(s, ',');
+            sink_millionths(s, net->margin->v[i].y);
+        }
+        PUT(s, "</data>\n");
+    }
+    PUT(s, "<data key=\"s\">");
+    sink_uint(s, net->n_steps);
+    PUT(s, "</data>\n");
+}
 
 static void put_node(const Network *net, uint32_t i, GString *s)
 {
@@ -52,7 +92,7 @@ static void put_edge(const Network *net, uint32_t e, GString *s)
     PUT(s, NEXT("b"));
     sink_uint(s, net->birth[e]);
     PUT(s, NEXT("l"));
-    sink_size(s, vec_dist(net->node[net->tail[e]], net->node[net->head[e]]));
+    sink_size(s, edge_length(net, e));
     PUT(s, "</data></edge>\n");
 }
 
@@ -70,6 +110,7 @@ gboolean export_graphml(const Network *net, const char *path, GError **error)
         g_string_append_printf(out->text, "<key id=\"%s\" for=\"%s\" attr.name=\"%s\" attr.type=\"%s\"/>\n", keys[i].id,
                                keys[i].domain, keys[i].name, keys[i].type);
     g_string_append(out->text, "<graph id=\"venation\" edgedefault=\"directed\">\n");
+    put_graph(net, out->text);
     for (uint32_t i = 0; i < net->n_nodes; i++) {
         put_node(net, i, out->text);
         sink_drain(out);

@@ -10,6 +10,7 @@ typedef enum {
     RANDOM_DART = 1,      /* auxin source darts */
     RANDOM_MARGIN = 2,    /* precomputed source set for marginal growth */
     RANDOM_TEXTURE = 3,   /* colour variation of the blade */
+    RANDOM_POSE = 64,     /* unevenness of poses */
 } RandomStream;
 
 /* Four independent 32-bit words. */

@@ -1,6 +1,7 @@
 /* The run record: all that a run depends on and what came of it, and no time or place, so that equal runs give equal bytes. */
 #include "export/export.h"
 #include "lib/leaf.h"
+#include "lib/shape.h"
 
 static uint64_t fnv(uint64_t h, const void *data, gsize n)
 {
@@ -106,7 +107,8 @@ static void parameters(GString *s, const Params *p)
     g_string_append(s, "\n    }\n  },\n");
 }
 
-char *ven_leaf_record(const VenLeaf *leaf)
+/* The record without its last brace. */
+static GString *begin_record(const VenLeaf *leaf)
 {
     const SimulationCounts *c = &leaf->counts;
     const Network *net = leaf->net;
@@ -131,6 +133,27 @@ char *ven_leaf_record(const VenLeaf *leaf)
                            c->step, leaf->growth_steps, (guint64)c->updates);
     key(s, "    ", "end");
     export_json_string(s, end_reason_text(c->end));
-    g_string_append(s, "\n  }\n}\n");
+    g_string_append(s, "\n  }");
+    return s;
+}
+
+char *ven_leaf_record(const VenLeaf *leaf)
+{
+    GString *s = begin_record(leaf);
+    g_string_append(s, "\n}\n");
+    return g_string_free(s, FALSE);
+}
+
+char *ven_shape_record(const VenShape *shape)
+{
+    const Surface *blade = shape->bent.blade;
+    GString *s = begin_record(shape->leaf);
+    g_string_append_printf(s, ",\n  \"shape\": {\n    \"veins\": %u,\n    \"vein_nodes\": %u,\n    \"vertices\": %u,\n    \"triangles\": %u,\n",
+                           shape->skeleton->n_sequences, shape->skeleton->n_nodes, blade->n_vertices, blade->n_triangles);
+    number(s, "unit", shape->unit, ",\n    \"levels\": [");
+    for (uint32_t i = 0; i < shape->n_levels; i++)
+        g_string_append_printf(s, "%s%u", i ? ", " : "", shape->level[i].mesh->n_triangles);
+    g_string_append_printf(s, "],\n    \"hash\": \"%016" G_GINT64_MODIFIER "x\"\n  }\n}\n",
+                           (guint64)fnv(0xCBF29CE484222325u, blade->place, sizeof *blade->place * blade->n_vertices));
     return g_string_free(s, FALSE);
 }

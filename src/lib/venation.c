@@ -3,6 +3,7 @@
 
 #include <gio/gio.h>
 
+#include "import/import.h"
 #include "lib/leaf.h"
 #include "lib/settings.h"
 
@@ -152,6 +153,49 @@ VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *opti
         settings_simulation_clear(&def);
     }
     polygon_free(outline);
+    return leaf;
+}
+
+/* ---- a network that is there already ---- */
+
+/* The margin of a network that doesn't say it: the outline of the parameters at the final length. */
+static Polygon *given_margin(const Params *p, const char *path, GError **error)
+{
+    if (!params_is_given(p, PARAM_OUTLINE_PATH) && !params_is_given(p, PARAM_OUTLINE_FILE)) {
+        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
+                    "%s: the graph has no attribute 'margin' (x,y x,y … in segments), nor do parameters give an [outline]", path);
+        return NULL;
+    }
+    Polygon *leaf = settings_outline(p, error);
+    if (!leaf)
+        return NULL;
+    for (uint32_t i = 0; i < leaf->n; i++)
+        leaf->v[i] = vec_scale(leaf->v[i], params_number(p, PARAM_GROWTH_FINAL_LENGTH));
+    Polygon *margin = polygon_new(leaf->v, leaf->n);
+    polygon_free(leaf);
+    return margin;
+}
+
+VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed, GError **error)
+{
+    const Params *p = params->values;
+    WidthDef widths = settings_widths(p);
+    Network *net = import_graphml(path, &widths, error);
+    if (net && !net->margin)
+        net->margin = given_margin(p, path, error);
+    if (!net || !net->margin) {
+        network_free(net);
+        return NULL;
+    }
+    VenLeaf *leaf = g_new0(VenLeaf, 1);
+    leaf->params = params_copy(p);
+    leaf->seed = seed;
+    leaf->net = net;
+    leaf->counts = (SimulationCounts){.step = net->n_steps, .nodes = net->n_nodes, .end = END_LOADED};
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        leaf->counts.joins += net->kind[e] == EDGE_ANASTOMOSIS;
+    leaf->length = net->margin->box.y1; /* the base is at the origin, the tip along +y */
+    leaf->stage = net->margin->box;
     return leaf;
 }
 

@@ -631,6 +631,51 @@ def completions(line):
     return done.stdout.decode().split()
 
 
+def test_shape():
+    write("small.ini", SMALL)
+    done = run("shape", "small.ini", "--size", "64", "--lod", "2", "--rig", "4", "--set", "pose.keyframes=0 blend=0; 2 blend=1", "--json")
+    same(done.status, 0)
+    record = json.loads(done.out)["shape"]
+    if record["triangles"] < 200 or record["levels"][0] >= record["triangles"]:
+        raise AssertionError(record)
+    wanted = {f"small{end}" for end in (".glb", ".obj", ".mtl", ".ply", ".pov", ".inc", ".json", "_lod1.glb", "_lod1.ply",
+                                        "_rigged.glb", "_animated.glb", "_base_color.png")}
+    found = set(files("out/small"))
+    if not wanted <= found:
+        raise AssertionError(wanted - found)
+    same(json.loads(open("out/small/small.json", encoding="utf-8").read())["shape"], record)
+    # the network that grow wrote gives the same leaf to the rounding of the file, and equal runs give equal bytes
+    same(run("grow", "small.ini", "--maps", "none", "-o", "net").status, 0)
+    for out in ("a", "b"):
+        same(run("shape", "net/small.graphml", "--params", "small.ini", "--size", "64", "-o", out, "--threads", "1" if out == "a" else "2").status, 0)
+    again = json.loads(open("a/small.json", encoding="utf-8").read())["shape"]
+    if abs(again["veins"] - record["veins"]) > 2: # a vein may lie right at a limit
+        raise AssertionError((again, record))
+    for name in files("a"):
+        same(open(f"a/{name}", "rb").read(), open(f"b/{name}", "rb").read(), name)
+
+
+def test_shape_refuses():
+    write("small.ini", SMALL)
+    check_refused(run("shape"), 2, "a file is missing")
+    check_refused(run("shape", "small.ini", "--pose", "wiltered"), 3, "withered")
+    check_refused(run("shape", "small.ini", "--formats", "glbb"), 3, "did you mean 'glb'?")
+    check_refused(run("shape", "small.ini", "--params", "small.ini"), 2, "--params")
+    check_refused(run("shape", "small.ini", "--set", "pose.rules=no_such_vein lift 10"), 3, "no_such_vein")
+    check_refused(run("shape", "small.ini", "--set", "pose.rules=midrib lift much"), 3, "much")
+    check_refused(run("shape", "small.ini", "--set", "pose.keyframes=2 blend=0; 1 blend=1"), 3, "keyframes")
+    check_refused(run("shape", "small.ini", "--set", "pose.keyframes=0 blnd=0"), 3, "blend")
+    check_refused(run("shape", "small.ini", "--set", "mesh.fictitious_veins=0,0"), 3, "two points")
+    check_refused(run("shape", "small.ini", "--set", "mesh.min_angle=60"), 3, "33")
+    write("empty.graphml", "")
+    check_refused(run("shape", "empty.graphml"), 3, "empty.graphml")
+    write("bare.graphml", '<graphml><key id="x" for="node" attr.name="x" attr.type="double"/><key id="y" for="node" attr.name="y" '
+          'attr.type="double"/><graph edgedefault="directed"><node id="a"><data key="x">0</data><data key="y">0</data></node>'
+          '<node id="b"><data key="x">0</data><data key="y">9</data></node><edge source="a" target="b"/></graph></graphml>')
+    check_refused(run("shape", "bare.graphml"), 3, "margin")
+    same(files("out") if os.path.isdir("out") else [], [])
+
+
 def test_completion():
     if not shutil.which("bash"):
         raise Skip("no bash")
@@ -639,12 +684,17 @@ def test_completion():
     same((done.returncode, done.stderr), (0, b""))
     write("leaf.ini", SMALL)
     write("leaf.txt", "")
+    write("leaf.graphml", "")
     write("outline.svg", "")
     os.mkdir("leaves")
     cases = {
-        "venation ": ["grow", "params", "help", "--version", "--help"],
+        "venation ": ["grow", "shape", "params", "help", "--version", "--help"],
         "venation gr": ["grow"],
         "venation help p": ["params"],
+        "venation shape le": ["leaves", "leaf.graphml", "leaf.ini"],
+        "venation shape leaf.graphml --params le": ["leaves", "leaf.ini"],
+        "venation shape leaf.ini --pose wi": ["withered"],
+        "venation shape leaf.ini --formats glb,p": ["glb,ply", "glb,pov"],
         "venation grow le": ["leaves", "leaf.ini"],
         "venation grow leaf.ini --se": ["--seed", "--set"],
         "venation grow leaf.ini --set veins.k": ["veins.kill_distance="],

@@ -3,8 +3,9 @@
 
     check_graphml.py FILE
 
-One "name value" a line: class, directed, nodes, edges, meshedness (alpha, of the graph without directions), acyclic, and
-for each attribute node.NAME or edge.NAME its Python type; then the sums of the numeric attributes, in repr form.
+One "name value" a line: class, directed, nodes, edges, meshedness (alpha, of the graph without directions), acyclic, for each
+attribute of the graph its Python type and value, and for each attribute node.NAME or edge.NAME its type and, of numeric ones,
+the sum, in repr form.
 Exits with 77 (skipped) without NetworkX.
 """
 import math
@@ -41,6 +42,8 @@ def main(path):
     print("edges", m)
     print("meshedness", repr((m - n + parts) / (2 * n - 5)) if n > 2 else "none")
     print("acyclic", nx.is_directed_acyclic_graph(graph))
+    for key in sorted(graph.graph.keys() - {"node_default", "edge_default"}):  # NetworkX's own
+        print(f"graph.{key}", type(graph.graph[key]).__name__, graph.graph[key])
     rows = {"node": (d for _, d in graph.nodes(data=True)), "edge": (d for _, _, d in graph.edges(data=True))}
     for domain, data in rows.items():
         for key, kind, total in attributes(data):

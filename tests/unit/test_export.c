@@ -440,6 +440,8 @@ static void test_graphml(void)
             g_assert_true(g_str_has_prefix(reported(l, floats[i]), "float "));
         }
         g_assert_true(g_str_has_prefix(reported(l, "edge.kind"), "str "));
+        g_assert_cmpstr(reported(l, "graph.steps"), ==, "int 40");
+        g_assert_cmpstr(reported(l, "graph.margin"), ==, "str 0,0 20,13.333333 0.4,41 -20,13.333333");
         double y = 0, births = 0;
         for (uint32_t i = 0; i < net->n_nodes; i++) {
             y += net->node[i].y;
@@ -455,6 +457,70 @@ static void test_graphml(void)
     g_unlink(path);
     g_free(path);
     g_free(script);
+    network_free(net);
+}
+
+/* The head of the file, with a margin and without. */
+static void test_graphml_graph(void)
+{
+    Network *net = small_leaf(2);
+    char *path = in_folder("g.graphml"), *text;
+    for (int i = 0; i < 2; i++) {
+        g_assert_true(export_graphml(net, path, NULL));
+        text = slurp(path, NULL);
+        const char *graph = strstr(text, "<graph ");
+        static const char *const head[] = {"<graph id=\"venation\" edgedefault=\"directed\">\n"
+                                           "<data key=\"m\">0,0 1,0.666667 0.4,3 -1,0.666667</data>\n<data key=\"s\">2</data>\n<node id=\"0\">",
+                                           "<graph id=\"venation\" edgedefault=\"directed\">\n<data key=\"s\">2</data>\n<node id=\"0\">"};
+        g_assert_true(g_str_has_prefix(graph, head[i]));
+        g_assert_nonnull(strstr(text, "<key id=\"m\" for=\"graph\" attr.name=\"margin\" attr.type=\"string\"/>\n"
+                                      "<key id=\"s\" for=\"graph\" attr.name=\"steps\" attr.type=\"int\"/>\n"));
+        g_free(text);
+        g_clear_pointer(&net->margin, polygon_free);
+    }
+    g_unlink(path);
+    g_free(path);
+    network_free(net);
+}
+
+/* A length is that between its nodes as the file has them. */
+static void test_graphml_lengths(void)
+{
+    enum { N = 2000 };
+    Network *net = network_new(N, N - 1);
+    for (uint32_t v = 0; v < N; v++) {
+        double u[2];
+        random_pair(3, 1, 0, v, u);
+        net->node[v] = vec2(4000 * u[0], 4000 * u[1]);
+        if (v % 2) /* just beside halves of a millionth */
+            net->node[v].x = nextafter(floor(net->node[v].x * 1e6) * 1e-6 + 0.5e-6, v % 4 == 1 ? 0.0 : 1e9);
+        if (v > 0) {
+            net->tail[v - 1] = v - 1;
+            net->head[v - 1] = v;
+        }
+    }
+    char *path = in_folder("l.graphml"), *text, **x, **y, **length;
+    g_assert_true(export_graphml(net, path, NULL));
+    text = slurp(path, NULL);
+    x = g_strsplit(text, "<data key=\"x\">", -1);
+    y = g_strsplit(text, "<data key=\"y\">", -1);
+    length = g_strsplit(text, "<data key=\"l\">", -1);
+    GString *s = g_string_new(NULL);
+    for (uint32_t e = 0; e + 1 < N; e++) {
+        Vec2 a = vec2(g_ascii_strtod(x[e + 1], NULL), g_ascii_strtod(y[e + 1], NULL));
+        Vec2 b = vec2(g_ascii_strtod(x[e + 2], NULL), g_ascii_strtod(y[e + 2], NULL));
+        g_string_truncate(s, 0);
+        sink_size(s, vec_dist(a, b));
+        g_string_append(s, "</data></edge>");
+        g_assert_true(g_str_has_prefix(length[e + 1], s->str));
+    }
+    g_string_free(s, TRUE);
+    g_strfreev(x);
+    g_strfreev(y);
+    g_strfreev(length);
+    g_free(text);
+    g_unlink(path);
+    g_free(path);
     network_free(net);
 }
 
@@ -606,6 +672,8 @@ int main(int argc, char **argv)
     g_test_add_func("/export/same-bytes", test_same_bytes);
     g_test_add_func("/export/tables", test_tables);
     g_test_add_func("/export/graphml", test_graphml);
+    g_test_add_func("/export/graphml-graph", test_graphml_graph);
+    g_test_add_func("/export/graphml-lengths", test_graphml_lengths);
     g_test_add_func("/export/svg", test_svg);
     g_test_add_func("/export/svg-runs", test_svg_runs);
     g_test_add_func("/export/svg-crowd", test_svg_crowd);

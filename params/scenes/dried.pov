@@ -1,0 +1,16 @@
+// Three dried leaves on a board.
+// grow  leaflet leaflet.ini
+// grow  poplar ../poplar.ini --set growth.final_length=1200
+// grow  sweetgum ../sweetgum.ini
+// shape dry0 leaflet --pose withered --set pose.age=0.75 --set pose.seed=3 --set texture.lamina_colour=#96602a --set texture.abaxial_vein_colour=#8a6840 --set texture.vein_colour=#b5905c --set texture.abaxial_lamina_colour=#a98455
+// shape dry1 poplar --pose withered --set pose.age=0.55 --set pose.seed=5 --set texture.lamina_colour=#b58b2e --set texture.abaxial_vein_colour=#b09560 --set texture.vein_colour=#d2b878 --set texture.abaxial_lamina_colour=#b79a63
+// shape dry2 sweetgum --pose withered --set pose.age=0.5 --set pose.seed=2 --set texture.lamina_colour=#8c3a22 --set texture.abaxial_vein_colour=#9c6a42 --set texture.vein_colour=#b9854f --set texture.abaxial_lamina_colour=#a4694a
+// size  1400 900
+#include "common.inc"
+camera { location <4, 46, -34> look_at <0, 0, 0.5> angle 36 right x * image_width / image_height }
+Sun(38, -50, 1.15 * <1, 0.94, 0.84>)
+Sky()
+object { Board(9) rotate -12 * y }
+object { Shaped_leaf("dry0") translate -9 * z rotate 62 * y translate <-8.5, 1.1, 2.5> }
+object { Shaped_leaf("dry1") translate -5 * z rotate -30 * y translate <3.5, 1.1, -3> }
+object { Shaped_leaf("dry2") translate -5 * z rotate 150 * y translate <9.5, 1.1, 5.5> }

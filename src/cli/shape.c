@@ -1,0 +1,111 @@
+/* venation shape: a bent leaf from a parameter file or a network. */
+#include <string.h>
+
+#include "cli/run.h"
+
+typedef struct {
+    RunArgs run;
+    char *params, *pose, *formats, *lod, *rig;
+} ShapeArgs;
+
+#define FIELD(name) (gpointer) offsetof(ShapeArgs, name)
+static const GOptionEntry options[] = {
+    RUN_OPTIONS,
+    {"params", 0, 0, G_OPTION_ARG_FILENAME, FIELD(params), "Parameter file for a NETWORK: colours, mesh, pose (default: the defaults)", "PARAMS"},
+    {"pose", 0, 0, G_OPTION_ARG_FILENAME, FIELD(pose), "Ready-made pose, as --set pose.preset",
+     "flat|cupped|folded|drooping|curled_tip|wavy|withered"},
+    {"formats", 0, 0, G_OPTION_ARG_FILENAME, FIELD(formats),
+     "Models to write: all, none, or names parted by commas out of glb, obj, ply, pov, as --set export.models", "MODELS"},
+    {"lod", 0, 0, G_OPTION_ARG_FILENAME, FIELD(lod), "Levels of detail, as --set mesh.levels", "N"},
+    {"rig", 0, 0, G_OPTION_ARG_FILENAME, FIELD(rig), "Rigged glTF too, with 4 or 8 joints a vertex, as --set export.rig", "none|4|8"},
+    {0},
+};
+
+static gboolean is_network(const char *path) { return g_str_has_suffix(path, ".graphml") || g_str_has_suffix(path, ".xml"); }
+
+static gboolean read_params(Run *run, const ShapeArgs *a, GError **error)
+{
+    const struct {
+        const char *key, *value;
+    } given[] = {{"pose.preset", a->pose}, {"mesh.levels", a->lod}, {"export.rig", a->rig}};
+    if (!run_read_params(run, is_network(run->path) ? a->params : run->path, error))
+        return FALSE;
+    for (gsize i = 0; i < G_N_ELEMENTS(given); i++)
+        if (given[i].value && !run_set(run, given[i].key, given[i].value, error))
+            return FALSE;
+    if (!a->formats)
+        return TRUE;
+    char *formats = g_strdelimit(g_strdup(a->formats), ",", ' ');
+    gboolean good = run_set(run, "export.models", formats, error);
+    g_free(formats);
+    return good;
+}
+
+static int get_leaf(Run *run)
+{
+    if (!is_network(run->path))
+        return run_grow_leaf(run, 0, NULL, NULL, NULL);
+    GError *error = NULL;
+    run->leaf = ven_leaf_load(run->params, run->path, run->seed, &error);
+    return run->leaf ? 0 : run_report(error, TRUE);
+}
+
+static gboolean shape_and_write(Run *run, const char *dir, gpointer user, GError **error)
+{
+    VenShape **shape = user;
+    *shape = ven_shape(run->leaf, error);
+    return *shape && ven_shape_write(*shape, dir, run->name, error);
+}
+
+static int carry_out(Run *run, const ShapeArgs *a, VenShape **shape)
+{
+    GError *error = NULL;
+    if (!read_params(run, a, &error))
+        return run_report(error, TRUE);
+    int status = run_begin(run);
+    if (status == 0)
+        status = get_leaf(run);
+    if (status == 0)
+        status = run_write(run, shape_and_write, shape);
+    if (status != 0)
+        return status;
+    char *what = g_strdup_printf("%u veins carry %u vertices and %u triangles", ven_shape_veins(*shape), ven_shape_vertices(*shape),
+                                 ven_shape_triangles(*shape));
+    run_summarise(run, what);
+    g_free(what);
+    return run->args->json ? run_print_record(ven_shape_record(*shape)) : 0;
+}
+
+static int run_shape(const Verb *verb, int argc, char **argv)
+{
+    ShapeArgs args = {0};
+    int status;
+    if (cli_parse(verb, &args, argc, argv, &status)) {
+        Run run;
+        VenShape *shape = NULL;
+        status = EXIT_USAGE;
+        if (run_read_args(&run, verb, &args.run)) {
+            if (args.params && !is_network(run.path))
+                cli_usage(verb, "--params goes with a network; %s is the parameter file", run.path);
+            else
+                status = carry_out(&run, &args, &shape);
+        }
+        ven_shape_free(shape);
+        run_clear(&run);
+    }
+    cli_clear(verb, &args);
+    return status;
+}
+
+const Verb shape_verb = {
+    "shape",
+    "PARAMS|NETWORK",
+    "Bend a leaf by its veins and write it as a model",
+    "Makes a leaf blade for other programs: the larger veins of a venation are its skeleton, which is bent as [pose] asks; the blade "
+    "between them is meshed and interpolated, veins and petiole become solids, and models are written for glTF, OBJ, PLY and POV-Ray, with "
+    "the maps they are dressed in.\n\n"
+    "PARAMS is a parameter file, and the leaf is grown first. NETWORK is a GraphML file that grow (or a person) wrote.\n\n"
+    "The files appear when all is done: a run that fails or is interrupted leaves nothing behind.",
+    options,
+    run_shape,
+};
