@@ -9,6 +9,10 @@
 #   // frames N                        frame_number runs from 0 to N - 1; the pictures are laid side by side
 set -eu
 venation=$1 scene=$2 name=$(basename "$2" .pov) percent=${4:-100}
+if [ ! -f "$scene" ]; then
+    echo "render.sh: no scene $name; there are $(cd "$(dirname "$scene")" && echo *.pov | sed 's/\.pov//g')" >&2
+    exit 3
+fi
 out=${3:-out/scenes/$name.png}
 here=$(cd "$(dirname "$scene")" && pwd)
 work=$(mktemp -d)

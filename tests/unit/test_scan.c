@@ -563,7 +563,12 @@ static void test_tiff_refused(void)
 
 /* Bad files */
 
-static void spit(const void *data, gsize n) { g_assert_true(g_file_set_contents(path, data, (gssize)n, NULL)); }
+static void spit(const void *data, gsize n)
+{
+    FILE *f = fopen(path, "wb");
+    g_assert_cmpuint(fwrite(data, 1, n, f), ==, n);
+    fclose(f);
+}
 
 /* Writes small pictures of all sorts, one at a time. False when there are no more. */
 static bool write_sample(uint32_t which)
@@ -707,11 +712,7 @@ static void test_otsu(void)
         }
         ThresholdDef def = {CHANNEL_GREY, LEAF_DARK, -1.0};
         Threshold t;
-        if (depth == 16) { /* 6 % of the scale: contrast enough */
-            g_assert_true(threshold_find(s, &def, &t, NULL));
-        } else {
-            g_assert_true(threshold_find(s, &def, &t, NULL));
-        }
+        g_assert_true(threshold_find(s, &def, &t, NULL)); /* 6 % of the scale are contrast enough */
         double best = 0.0;
         for (uint32_t level = 1; level <= most; level++)
             best = fmax(best, explained(s, level));
