@@ -15,10 +15,10 @@ plane { y, 0 pigment { rgb 0.62 } finish { ambient 0 diffuse 0.8 } }
 #declare K = 0;
 #while (K < 6)
     object {
-        Shaped_leaf(concat("age", str(K, 1, 0)))
+        Laid(Shaped_leaf(concat("age", str(K, 1, 0))))
         translate -9 * z
         rotate <-2, (K < 3 ? -14 + 14 * K : 194 - 14 * (K - 3) - 180), 0>
-        translate <(K < 3 ? -14 + 14 * K : 14 - 14 * (K - 3)), 0.9, (K < 3 ? 10 : -11)>
+        translate <(K < 3 ? -14 + 14 * K : 14 - 14 * (K - 3)), 0, (K < 3 ? 10 : -11)>
     }
     #declare K = K + 1;
 #end

@@ -17,7 +17,7 @@ background { rgb <0.72, 0.78, 0.84> }
     #declare Kind[K] = Shaped_leaf(concat("bough", str(K, 1, 0)))
     #declare K = K + 1;
 #end
-#declare Twig = function(t) { 4 * sin(t * 2.6) - 5 * t };
+#declare Twig = function(x) { 4 * sin(x * 2.6) - 5 * x }; // height along the twig, x from 0 to 1
 #declare Bark = texture { pigment { bozo color_map { [0 rgb <0.28, 0.24, 0.16>] [1 rgb <0.36, 0.33, 0.22>] } scale 0.6 } finish { ambient 0 diffuse 0.8 } }
 sphere_sweep {
     b_spline 14

@@ -6,10 +6,10 @@
 // shape part3 leaflet --pose drooping --set pose.seed=4
 // size  1200 1100
 #include "common.inc"
-camera { location <0, 62, -46> look_at <0, -0.5, 2.5> angle 38 right x * image_width / image_height }
+camera { location <0, 66, -40> look_at <0, -1, -1> angle 36 right x * image_width / image_height }
 Sun(52, -40, 1.05 * <1, 0.97, 0.9>)
 Sky()
-plane { y, -14 pigment { rgb 0.6 } finish { ambient 0 diffuse 0.8 } }
+plane { y, -9 pigment { rgb 0.6 } finish { ambient 0 diffuse 0.8 } }
 #declare Part = array[4];
 #declare K = 0;
 #while (K < 4)

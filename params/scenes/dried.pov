@@ -7,10 +7,10 @@
 // shape dry2 sweetgum --pose withered --set pose.age=0.5 --set pose.seed=2 --set texture.lamina_colour=#8c3a22 --set texture.abaxial_vein_colour=#9c6a42 --set texture.vein_colour=#b9854f --set texture.abaxial_lamina_colour=#a4694a
 // size  1400 900
 #include "common.inc"
-camera { location <4, 46, -34> look_at <0, 0, 0.5> angle 36 right x * image_width / image_height }
+camera { location <4, 46, -34> look_at <0, 0, 0.5> angle 32 right x * image_width / image_height }
 Sun(38, -50, 1.15 * <1, 0.94, 0.84>)
 Sky()
 object { Board(9) rotate -12 * y }
-object { Shaped_leaf("dry0") translate -9 * z rotate 62 * y translate <-8.5, 1.1, 2.5> }
-object { Shaped_leaf("dry1") translate -5 * z rotate -30 * y translate <3.5, 1.1, -3> }
-object { Shaped_leaf("dry2") translate -5 * z rotate 150 * y translate <9.5, 1.1, 5.5> }
+object { Laid(Shaped_leaf("dry0")) translate -9 * z rotate 62 * y translate <-8.5, 0, 2.5> }
+object { Laid(Shaped_leaf("dry1")) translate -5 * z rotate -30 * y translate <3.5, 0, -3> }
+object { Laid(Shaped_leaf("dry2")) translate -5 * z rotate 150 * y translate <9.5, 0, 5.5> }

@@ -4,9 +4,9 @@
 // shape green ginkgo --pose wavy --set pose.strength=0.8 --set pose.seed=9 --set mesh.petiole_length=0.7
 // size  1200 900
 #include "common.inc"
-camera { location <2, 34, -26> look_at <0.5, 0, 0.5> angle 36 right x * image_width / image_height }
+camera { location <2, 34, -26> look_at <0.5, 0, 0.5> angle 33 right x * image_width / image_height }
 Sun(46, -48, 1.1 * <1, 0.96, 0.88>)
 Sky()
 plane { y, 0 pigment { rgb <0.5, 0.5, 0.52> } finish { ambient 0 diffuse 0.8 } }
-object { Shaped_leaf("gold") translate -4 * z rotate -28 * y translate <-5, 1, 1> }
-object { Shaped_leaf("green") translate -4 * z rotate 40 * y translate <5.5, 1, -1> }
+object { Laid(Shaped_leaf("gold")) translate -4 * z rotate -28 * y translate <-6, 0, 1> }
+object { Laid(Shaped_leaf("green")) translate -4 * z rotate 40 * y translate <6.5, 0, -1> }
