@@ -6,10 +6,9 @@
 // shape bough3 poplar --pose wavy --set pose.seed=4 --set pose.strength=0.7
 // size  1400 1000
 #include "common.inc"
-camera { location <0, 12, -95> look_at <0, -2, 0> angle 30 right x * image_width / image_height }
+camera { location <0, 12, -95> look_at <0, -4, 0> angle 27 right x * image_width / image_height }
 Sun(50, 155, 1.2 * <1, 0.96, 0.88>)
 light_source { <60, 40, -120>, 0.35 shadowless }
-Sky()
 background { rgb <0.72, 0.78, 0.84> }
 #declare Kind = array[4];
 #declare K = 0;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Grows and shapes the leaves of a scene and renders it with POV-Ray.
-# Usage: render.sh VENATION SCENE.pov [OUT.png] [WIDTH-PERCENT]; needs povray, and ImageMagick for a scene of several frames. `./run scene NAME` calls it.
+# Usage: render.sh VENATION SCENE.pov [OUT.png] [WIDTH-PERCENT]; needs povray, and ImageMagick for a scene of several frames or an OUT that is no PNG. `./run scene NAME` calls it.
 #
 # The scene's comments say what it is made of:
 #   // grow  NAME PARAMS [OPTION…]     a venation, from a parameter file beside the scene
@@ -50,8 +50,10 @@ echo "$name: renders $width x $height" >&2
 )
 if [ -n "$frames" ]; then
     montage "$work"/image*.png -tile "$(((frames + 1) / 2))x" -geometry +4+4 "$work/all.png"
-    mv "$work/all.png" "$out"
-else
-    mv "$work/image.png" "$out"
+    mv "$work/all.png" "$work/image.png"
 fi
+case $out in
+*.png) mv "$work/image.png" "$out" ;;
+*) convert "$work/image.png" -strip -quality 88 "$out" ;;
+esac
 echo "$out" >&2

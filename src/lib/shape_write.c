@@ -30,6 +30,8 @@ static gboolean paint(ModelWriter *m, GError **error)
 {
     /* what OBJ and POV-Ray refer to lies beside them; what glTF holds needs no file */
     gboolean files = m->wanted[MODEL_OBJ] || m->wanted[MODEL_POV], ok = TRUE;
+    if (!files && !m->wanted[MODEL_GLB])
+        return TRUE;
     Painter *painter = writer_painter(&m->writer, &m->shape->frame);
     for (gsize i = 0; ok && i < G_N_ELEMENTS(dress); i++) {
         MapId id = dress[i];

@@ -3,8 +3,8 @@
 
 usage: snapshot.py VENATION PARAMS_DIR SNAPSHOT_FILE [--update]
 
-Grows every PARAMS_DIR/*.ini, made small by sizes.txt beside this script, with 1, 2 and 7 threads, and compares the network's hash and
-the pixels of every map with SNAPSHOT_FILE: a line "model item hash" for each. Pixels, not file bytes, which depend on the
+Grows every PARAMS_DIR/*.ini, made small by sizes.txt beside this script, with 1, 2 and 7 threads, and compares the network's hash,
+that of the bent blade and the pixels of every map with SNAPSHOT_FILE: a line "model item hash" for each. Pixels, not file bytes, which depend on the
 version of zlib. Speaks TAP. After a change that is meant to change leaves:
 
     tests/snapshot/snapshot.py build/src/venation params tests/snapshot/snapshot.txt --update
@@ -92,16 +92,21 @@ def png_hash(path):
     return digest.hexdigest()[:16]
 
 
+def run(command):
+    """The record that a run prints."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError("venation failed with status %d: %s" % (done.returncode, done.stderr.strip()))
+    return json.loads(done.stdout)
+
+
 def grow(venation, params, model, overrides, threads):
-    """Items and hashes of one run."""
+    """Items and hashes of one run, grown and then shaped."""
     with tempfile.TemporaryDirectory(prefix="venation-snapshot-") as out:
-        command = [venation, "grow", os.path.join(params, model + ".ini"), "-o", out, "--name", model, "--quiet", "--json",
-                   "--seed", "1", "--threads", str(threads)]
-        command += ["--set=" + o for o in COMMON + tuple(overrides)]
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
-        if run.returncode:
-            raise RuntimeError("venation failed with status %d: %s" % (run.returncode, run.stderr.strip()))
-        items = {"network": json.loads(run.stdout)["network"]["hash"]}
+        options = [os.path.join(params, model + ".ini"), "-o", out, "--name", model, "--quiet", "--json", "--seed", "1",
+                   "--threads", str(threads)] + ["--set=" + o for o in COMMON + tuple(overrides)]
+        items = {"network": run([venation, "grow"] + options)["network"]["hash"],
+                 "shape": run([venation, "shape"] + options + ["--formats", "none", "--pose", "withered"])["shape"]["hash"]}
         for name in sorted(os.listdir(out)):
             if name.endswith(".png"):
                 items[name[len(model) + 1:-4]] = png_hash(os.path.join(out, name))
