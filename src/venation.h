@@ -99,6 +99,9 @@ typedef struct VenShape VenShape;
 VEN_API VenShape *ven_shape(const VenLeaf *leaf, GError **error);
 VEN_API void ven_shape_free(VenShape *shape);
 
+/* Poses it anew by [pose] of `params`; skeleton, mesh and factor are kept. On error the old pose stays. */
+VEN_API gboolean ven_shape_pose(VenShape *shape, const VenParams *params, uint64_t seed, GError **error);
+
 /* Writes the models that export.models names, with the maps they refer to: <name>.glb, .obj and .mtl, .ply, .pov and .inc; with several
  * mesh.levels <name>_lod1.glb and so on; with a rig <name>_rigged.glb; with pose.keyframes <name>_animated.glb; and the record. */
 VEN_API gboolean ven_shape_write(const VenShape *shape, const char *dir, const char *name, GError **error);

@@ -8,7 +8,7 @@
 // shape age5 leaflet --pose withered --set pose.age=1 --set texture.lamina_colour=#5e3d1e --set texture.vein_colour=#86683f --set texture.abaxial_lamina_colour=#8a6a45 --set texture.abaxial_vein_colour=#765a36
 // size  1500 1000
 #include "common.inc"
-camera { location <0, 80, -24> look_at <0, 0, 0> angle 40 right x * image_width / image_height }
+camera { location <0, 80, -24> look_at <0, 0, -1> angle 41 right x * image_width / image_height }
 Sun(48, -35, 1.05 * <1, 0.97, 0.9>)
 Sky()
 plane { y, 0 pigment { rgb 0.62 } finish { ambient 0 diffuse 0.8 } }
@@ -18,7 +18,7 @@ plane { y, 0 pigment { rgb 0.62 } finish { ambient 0 diffuse 0.8 } }
         Laid(Shaped_leaf(concat("age", str(K, 1, 0))))
         translate -9 * z
         rotate <-2, (K < 3 ? -14 + 14 * K : 194 - 14 * (K - 3) - 180), 0>
-        translate <(K < 3 ? -14 + 14 * K : 14 - 14 * (K - 3)), 0, (K < 3 ? 10 : -11)>
+        translate <(K < 3 ? -15 + 15 * K : 15 - 15 * (K - 3)), 0, (K < 3 ? 10 : -9.5)>
     }
     #declare K = K + 1;
 #end

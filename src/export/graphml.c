@@ -18,8 +18,8 @@ static const struct {
 #define PUT(s, text) g_string_append_len(s, text, sizeof(text) - 1)
 #define NEXT(key) "</data><data key=\"" key "\">"
 
-/* The number that sink_millionths writes, up to 4e9: so that a length is that between the nodes as they stand in the file, and the file is the
- * same again when it is read and written. */
+/* The number that sink_millionths writes, up to 4e9: so that a length is that between the nodes as they stand in the file, and the file
+ * is the same again when it is read and written. */
 static double rounded(double value)
 {
     double scaled = value * 1e6, whole = rint(scaled), over = scaled - whole;

@@ -116,7 +116,7 @@ static void close_gaps(Network *net)
         net->n_veins = 0;
         for (uint32_t k = 0; k < net->n_edges; k++) {
             uint32_t number = net->vein[edge[k]];
-            net->n_veins += k == 0 || number != last;
+            net->n_veins += number != last;
             last = number;
             net->vein[edge[k]] = net->n_veins - 1;
         }

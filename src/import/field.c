@@ -1,13 +1,15 @@
 #include "import/field.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "import/import.h"
 #include "import/names.h"
 
-/* Largest coordinate and width, and smallest width, segments: squares and powers of them stay finite. */
+/* Largest coordinate, segments: products of them stay exact enough, and finite. */
 #define LARGEST 1e9
-#define SMALLEST 1e-9
+/* Largest width, segments, and one over the smallest: whatever width.exponent and width.minimum, flows stay finite and above 0. */
+#define WIDEST 1e24
 /* GraphML's int has 32 bits. */
 #define LARGEST_INT 2147483647.0
 
@@ -27,8 +29,8 @@ static const struct {
     [FIELD_ORDER] = {DOMAIN_EDGE, "order", WHOLE, 1, 255, "a whole number from 1 to 255"},
     [FIELD_RANK] = {DOMAIN_EDGE, "rank", WHOLE, 1, 255, "a whole number from 1 to 255"},
     [FIELD_VEIN] = {DOMAIN_EDGE, "vein", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
-    [FIELD_WIDTH] = {DOMAIN_EDGE, "width", REAL, SMALLEST, LARGEST, "a number above 0, from 1e-9 to 1e9, in segments"},
-    [FIELD_FLOW] = {DOMAIN_EDGE, "flow", REAL, 1e-300, 1e300, "a number above 0"},
+    [FIELD_WIDTH] = {DOMAIN_EDGE, "width", REAL, 1.0 / WIDEST, WIDEST, "a number above 0, from 1e-24 to 1e24, in segments"},
+    [FIELD_FLOW] = {DOMAIN_EDGE, "flow", REAL, 1e-305, 1e305, "a number above 0"},
     [FIELD_BIRTH] = {DOMAIN_EDGE, "birth", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
     [FIELD_MARGIN] = {DOMAIN_GRAPH, "margin", POINTS, -LARGEST, LARGEST, "points x,y x,y … of numbers from -1e9 to 1e9, in segments"},
     [FIELD_STEPS] = {DOMAIN_GRAPH, "steps", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
@@ -117,7 +119,8 @@ static bool parse_point(const char *at, const char *end, Vec2 *out)
     return comma != NULL && parse(FIELD_MARGIN, at, comma, &out->x) && parse(FIELD_MARGIN, comma + 1, end, &out->y);
 }
 
-static bool same(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
+/* Would they be written as one point? (export.h: in millionths of a segment) */
+static bool same(Vec2 a, Vec2 b) { return rint(a.x * 1e6) == rint(b.x * 1e6) && rint(a.y * 1e6) == rint(b.y * 1e6); }
 
 /* All points of the text but repeated ones; NULL with an error for one that is none. */
 static GArray *parse_points(const char *text, gsize length, GError **error)

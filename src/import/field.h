@@ -36,7 +36,7 @@ FieldId field_find(Domain domain, const char *name);
  * kind of number. On failure the error (in IMPORT_ERROR, as all of src/import) says what was found and what may be. */
 gboolean field_value(FieldId field, const char *text, gsize length, double *out, GError **error);
 
-/* The margin: points that repeat the one before are left out, and a last one that repeats the first. */
+/* The margin: points that repeat the one before, to a millionth of a segment, are left out, and last ones that repeat the first. */
 Polygon *field_margin(const char *text, gsize length, GError **error);
 
 #endif

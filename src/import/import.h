@@ -37,7 +37,8 @@ typedef enum {
  * numbers with gaps are closed up. Without a margin Network.margin is NULL: whoever needs one must ask for it.
  *
  * Errors in G_FILE_ERROR (the file can't be read) or IMPORT_ERROR name file, line, what was found and what may be. The file is
- * streamed: memory goes with the network, about 80 bytes a node and edge. O(n), O(n log n) where the network must be opened. */
+ * streamed: memory goes with the network, about 50 bytes a node or edge, 70 where names are words and the network must be opened. O(n), or
+ * O(n log n) where it must. */
 Network *import_graphml(const char *path, const WidthDef *widths, GError **error);
 
 /* The same of a text in memory; `name` stands for the file in messages. */

@@ -179,16 +179,22 @@ static gboolean build(VenShape *s, GError **error)
     return s->membrane && add_levels(s, error);
 }
 
-static gboolean bend_as_asked(VenShape *s, GError **error)
+static gboolean bend_as_asked(VenShape *s, const Params *p, uint64_t seed, GError **error)
 {
-    PoseDef def = settings_pose(s->leaf->params, s->leaf->seed);
+    PoseDef def = settings_pose(p, seed);
     Pose *pose = pose_new(s->skeleton);
     if (!pose_apply(pose, &def, error)) {
         pose_free(pose);
         return FALSE;
     }
+    bent_clear(&s->bent);
     s->bent = shape_bend(s, pose);
     return TRUE;
+}
+
+gboolean ven_shape_pose(VenShape *shape, const VenParams *params, uint64_t seed, GError **error)
+{
+    return bend_as_asked(shape, params->values, seed, error);
 }
 
 VenShape *ven_shape(const VenLeaf *leaf, GError **error)
@@ -199,7 +205,7 @@ VenShape *ven_shape(const VenLeaf *leaf, GError **error)
     s->solid = settings_solids(p, leaf->length);
     s->unit = params_number(p, PARAM_EXPORT_LEAF_LENGTH) / leaf->length;
     s->frame = leaf_frame(leaf, leaf->net->margin->box);
-    if (build(s, error) && bend_as_asked(s, error))
+    if (build(s, error) && bend_as_asked(s, p, leaf->seed, error))
         return s;
     ven_shape_free(s);
     return NULL;

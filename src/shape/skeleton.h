@@ -28,10 +28,12 @@ typedef struct {
     uint32_t vein;         /* of the network, NO_PARENT for a fictitious one */
     double base_radius, tip_radius; /* segments */
     double length;         /* at rest, segments */
-    char name[24];         /* midrib; else side and number from the base: L1, R2 …, with its parent's before it: R2.L1; P2 … other primaries */
+    char name[24];         /* midrib (sequence 0); P2 … other primaries; F1 … fictitious; else side and number from the base: L1, R2 …, with its
+                              parent's before it when that is not the midrib: R2.L1, P2.R3 */
 } Sequence;
 
-/* Nodes form a forest: hinge[i] < i is the node nearer to the root (Hong's hinge of the edge hinge[i] – i), NO_PARENT for a root. */
+/* Nodes form a forest: hinge[i] < i is the node nearer to the root (Hong's hinge of the edge hinge[i] – i), NO_PARENT for a root. Primaries that
+ * begin in one place share that node. */
 typedef struct {
     uint32_t n_nodes, n_sequences, n_at;
     Vec2 *rest;       /* [n_nodes] position in the flat blade, segments */
@@ -41,15 +43,15 @@ typedef struct {
     uint32_t *at;     /* [n_at] nodes of the sequences, one sequence after the other */
     Sequence *sequence; /* [n_sequences] parents before children */
     Polygon *outline; /* the blade, simplified, vein ends on it inserted; owned */
-    double least;     /* skeleton_pslg passes pslg_check with this, segments */
+    double least;     /* skeleton_pslg passes pslg_check with this, segments; 0 (not known) after skeleton_refine */
 } Skeleton;
 
 typedef struct {
     uint32_t max_order;      /* veins up to this order (network order) */
     double tolerance;        /* of the simplification of veins and outline, segments */
-    double spacing;          /* longest vein edge, segments (a long edge can't bend); 0: no limit */
+    double spacing;          /* longest vein edge, segments (a long edge can't bend), not below the clearance; 0: no limit */
     double clearance;        /* veins nearer than this to others, and tips nearer to the margin, are cleared, segments */
-    double min_angle;        /* a sequence that leaves its parent at less than this is moved up or dropped, degrees */
+    double min_angle;        /* a sequence that leaves its parent at less than this is moved up or dropped, degrees, 0 … 60 */
     double min_length;       /* shorter sequences are dropped, segments */
     const Polygon *fictitious; /* reserved for drawn ones; NULL */
 } SkeletonDef;
@@ -58,12 +60,16 @@ typedef struct {
 SkeletonDef skeleton_def_default(double length);
 
 /* Opens the network along its growth parents (anastomoses are left out), keeps the structural veins, simplifies them and the outline (Hong 2005,
- * § 5.3) and clears what a mesher can't take, so that skeleton_pslg passes pslg_check. Deterministic. O(n log n) expected. */
+ * § 5.3) and clears what a mesher can't take, so that skeleton_pslg passes pslg_check with a quarter of the clearance. Lower orders, and of one
+ * order longer veins, are laid first; others end, or begin farther up their parent, where they would come too near, and go when a third or
+ * less of them could stay. Curls and hooks are cut off; tips near the margin are led on to it. A node that two edges lead to was grown by the
+ * wider one (of equals the first); the other ends before it. Deterministic. O(n log n) expected. */
 Skeleton *skeleton_new(const Network *net, const SkeletonDef *def, GError **error);
 void skeleton_free(Skeleton *s);
 
-/* Adds fictitious veins: from a node halfway between neighbouring sequences … as chosen by hand: each is a polyline from a point (snapped to
- * the nearest node) to a tip inside the blade. Returns a new skeleton. */
+/* Adds fictitious veins as drawn by hand: vein k is a polyline of count[k] >= 2 of the points, from the first one (snapped to the nearest node) to
+ * a tip inside the blade. Returns a new skeleton, whose other nodes and sequences keep their numbers; long edges are cut. The error names
+ * the vein and where it comes nearer than `least` to what is there. */
 Skeleton *skeleton_add_fictitious(const Skeleton *s, const Vec2 *point, const uint32_t *count, uint32_t n_veins, GError **error);
 
 /* Outline and veins as a planar straight-line graph. node_point[n_nodes] receives each node's point. */

@@ -17,7 +17,7 @@ static const double free_part = 0.7;
 static const double worth_moving = 1.5;
 
 /* A sequence that other veins cut off is kept when so much of it is left. */
-static const double stump_part = 0.5;
+static const double stump_part = 1.0 / 3.0;
 
 typedef struct {
     Clearing *c;

@@ -59,23 +59,18 @@ static uint32_t nearest_node(const Adding *a, Vec2 p)
     return best;
 }
 
-/* The sequence a node belongs to, and its place there: where it is not the first node, if there is such a one. */
+/* The sequence a node belongs to and its place there: the first one that has it, as parents come before their children. */
 static uint32_t sequence_of(const Adding *a, uint32_t node, uint32_t *place)
 {
-    uint32_t first = NONE;
     for (uint32_t q = 0; q < a->sequence->len; q++) {
         const Sequence *s = &g_array_index(a->sequence, Sequence, q);
-        for (uint32_t i = 0; i < s->n; i++) {
-            if (g_array_index(a->at, uint32_t, s->first + i) != node)
-                continue;
-            *place = i;
-            if (i > 0)
+        for (uint32_t i = 0; i < s->n; i++)
+            if (g_array_index(a->at, uint32_t, s->first + i) == node) {
+                *place = i;
                 return q;
-            first = first == NONE ? q : first;
-        }
+            }
     }
-    *place = 0;
-    return first;
+    g_assert_not_reached(); /* every node is of a sequence */
 }
 
 /* Lays an edge in parts no longer than the spacing. */
@@ -88,9 +83,9 @@ static bool lay_to(Adding *a, uint32_t vein, Vec2 to, GError **error)
         Vec2 v = i == parts ? to : vec_lerp(from, to, (double)i / (double)parts);
         Hit hit = ground_clash(g, v, NULL);
         if (hit != HIT_NOTHING) {
-            g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "fictitious vein %u %s between (%g, %g) and (%g, %g); it must keep %g away", vein,
-                        hit == HIT_MARGIN ? "comes too near to the margin, or leaves the blade," : "comes too near to another vein or to itself",
-                        from.x, from.y, to.x, to.y, g->limits.least);
+            const char *fault = hit == HIT_MARGIN ? "comes too near to the margin, or leaves the blade," : "comes too near to another vein or to itself";
+            g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "fictitious vein %u %s between (%g, %g) and (%g, %g); it must keep %g away",
+                        vein, fault, from.x, from.y, to.x, to.y, g->limits.least);
             return false;
         }
         ground_lay(g, v, NULL);

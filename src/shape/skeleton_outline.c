@@ -301,13 +301,18 @@ static void cut_loop(Ring *r, uint32_t from, uint32_t to)
     r->n = n;
 }
 
-/* Of the two loops that the ring falls into at a pinch the lesser is cut off: a slit is closed, a neck with what it holds goes. */
+/* Of the two loops that the ring falls into at a pinch the smaller is cut off: a slit is closed, a neck with what it holds goes. When that would cost
+ * a point where a vein begins, as at the bottom of a narrow sinus, the lesser of the points that are too near goes instead. */
 static void mend(Ring *r, Pinch c)
 {
-    uint32_t a0 = c.i, a1 = c.j, b0 = c.j, b1 = c.cross ? c.i : (c.i + r->n - 1) % r->n;
+    uint32_t next = (c.j + 1) % r->n, a0 = c.i, a1 = c.j, b0 = c.j, b1 = c.cross ? c.i : (c.i + r->n - 1) % r->n;
     uint8_t rank_a, rank_b;
     double a = loop_loss(r, a0, a1, &rank_a), b = loop_loss(r, b0, b1, &rank_b);
-    if (rank_a < rank_b || (rank_a == rank_b && a <= b))
+    uint32_t least = r->rank[c.j] < r->rank[c.i] ? c.j : c.i;
+    least = r->rank[next] < r->rank[least] ? next : least;
+    if ((a <= b ? rank_a : rank_b) >= WANTED && r->rank[least] < WANTED)
+        cut_loop(r, (least + r->n - 1) % r->n, least);
+    else if (a <= b)
         cut_loop(r, a0, a1);
     else
         cut_loop(r, b0, b1);

@@ -1,7 +1,5 @@
 #include "shape/skeleton_plan.h"
 
-#include <string.h>
-
 /* ---- where primaries begin ---- */
 
 /* Where the segment from outside to inside enters the polygon last. */
@@ -26,8 +24,9 @@ static Root find_root(const Polygon *margin, const Vec2 *p, uint32_t n, double c
 {
     uint32_t edge, from = 1;
     Vec2 near = outline_nearest(margin, p[0], &edge);
-    if (vec_dist2(near, p[0]) < clear * clear)
-        return (Root){.at = near, .from = 1, .on_margin = true};
+    double d = vec_dist(near, p[0]);
+    if (d < clear)
+        return (Root){.at = d < 1e-9 * clear ? p[0] : near, .from = 1, .on_margin = true}; /* on it but for rounding: as it is */
     if (polygon_contains(margin, p[0]))
         return (Root){.at = p[0], .from = 1};
     while (from < n && !polygon_contains(margin, p[from]))
@@ -129,15 +128,27 @@ static bool crowded(const Plan *p, const Trail *t, uint32_t at)
 
 void plan_branches(Plan *p)
 {
-    memset(p->must, 0, count_points(p->trails) * sizeof *p->must);
+    for (uint32_t i = 0; i < count_points(p->trails); i++)
+        p->must[i] = false;
     for (uint32_t k = 0; k < p->trails->n; k++) {
         uint32_t i = p->rank[k];
         if (!p->wanted[i] || p->host[i] == NONE)
             continue;
         const Trail *host = &p->trails->trail[p->host[i]];
+        const double *along = p->trails->along + host->first;
         if (!crowded(p, host, p->leaf[i]))
             p->must[host->first + p->leaf[i]] = true;
+        else if (along[host->n - 1] - along[p->leaf[i]] < p->merge) /* it will leave from the tip */
+            p->must[host->first + host->n - 1] = true;
     }
+}
+
+static bool stands_near(const GArray *at, Vec2 p, double reach)
+{
+    for (uint32_t i = 0; i < at->len; i++)
+        if (vec_dist2(g_array_index(at, Vec2, i), p) < reach * reach)
+            return true;
+    return false;
 }
 
 GArray *plan_roots(const Plan *p, Vec2 *base)
@@ -150,7 +161,7 @@ GArray *plan_roots(const Plan *p, Vec2 *base)
             continue;
         if (first)
             *base = r->at;
-        if (r->on_margin)
+        if (r->on_margin && !stands_near(at, r->at, p->merge))
             g_array_append_val(at, r->at);
         first = false;
     }

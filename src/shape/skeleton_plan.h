@@ -27,7 +27,8 @@ void plan_clear(Plan *p);
 /* Chooses the points where wanted branches leave, those that are too near to another excepted. */
 void plan_branches(Plan *p);
 
-/* Wanted roots on the margin, by importance, and in *base the first of all roots. Returns Vec2. */
+/* Wanted roots on the margin, by importance, those left out that will share an earlier one's node; and in *base the first of all roots. Returns
+ * Vec2. */
 GArray *plan_roots(const Plan *p, Vec2 *base);
 
 /* Wants only what was cleared, and branch nodes where the branches left. */

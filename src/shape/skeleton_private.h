@@ -1,4 +1,5 @@
-/* What the files of the skeleton share: the way from a network to a skeleton is skeleton_open.c, _outline.c, _clear.c, _name.c. */
+/* What the files of the skeleton share. From a network to a skeleton: skeleton_open.c follows the veins, _outline.c simplifies the margin, _clear.c
+ * lays veins on it as _plan.c says and _lay.c and _ground.c allow, skeleton.c copies what lies, _name.c names it. */
 #ifndef SHAPE_SKELETON_PRIVATE_H
 #define SHAPE_SKELETON_PRIVATE_H
 
@@ -69,7 +70,6 @@ Limits clearing_limits(const SkeletonDef *def, double size);
 /* Simplifies the margin and lays the trails on it, the more important first, each as far as it keeps clear. */
 Clearing *clearing_new(const Trails *trails, const Polygon *margin, const SkeletonDef *def, GError **error);
 void clearing_free(Clearing *c);
-
 
 /* ---- skeleton.c ---- */
 

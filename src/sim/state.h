@@ -19,6 +19,7 @@ typedef struct {
     Quadtree tree;
     uint32_t *join_tail, *join_head, *join_birth; /* anastomoses */
     uint32_t n_joins, cap_joins;
+    GHashTable *joined; /* their pairs of nodes: two sources may be reached by the same two veins */
 } Veins;
 
 /* An auxin source. Bit i of a mask speaks of member i of the hood. */
@@ -85,7 +86,7 @@ struct Simulation {
 void veins_init(Veins *v, Box2 field);
 void veins_clear(Veins *v);
 uint32_t veins_add(Veins *v, Vec2 pos, uint32_t parent, uint32_t step);
-void veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step);
+bool veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step); /* FALSE: they are joined already */
 
 /* sources.c */
 gboolean sources_prepare(Simulation *s, GError **error);

@@ -16,6 +16,8 @@ void veins_clear(Veins *v)
     g_free(v->join_tail);
     g_free(v->join_head);
     g_free(v->join_birth);
+    if (v->joined)
+        g_hash_table_destroy(v->joined);
     quadtree_clear(&v->tree);
 }
 
@@ -39,8 +41,13 @@ uint32_t veins_add(Veins *v, Vec2 pos, uint32_t parent, uint32_t step)
     return i;
 }
 
-void veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step)
+bool veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step)
 {
+    gint64 pair = (gint64)((uint64_t)MIN(a, b) << 32 | MAX(a, b));
+    if (!v->joined)
+        v->joined = g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free, NULL);
+    if (!g_hash_table_add(v->joined, g_memdup2(&pair, sizeof pair)))
+        return false;
     if (v->n_joins == v->cap_joins) {
         v->cap_joins = MAX(v->cap_joins * 2, 256);
         v->join_tail = g_renew(uint32_t, v->join_tail, v->cap_joins);
@@ -50,4 +57,5 @@ void veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step)
     v->join_tail[v->n_joins] = MIN(a, b);
     v->join_head[v->n_joins] = MAX(a, b);
     v->join_birth[v->n_joins++] = step;
+    return true;
 }

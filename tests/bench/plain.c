@@ -353,6 +353,11 @@ static void join_arrived(Plain *w, const Auxin *a)
         uint32_t u = a->arrived[0], v = a->arrived[i];
         if (far2(w->pos[u], w->pos[v]) > most * most || close_kin(w, u, v))
             continue;
+        bool joined = false;
+        for (uint32_t j = 0; j < w->n_joins; j++)
+            joined |= w->join[3 * j] == MIN(u, v) && w->join[3 * j + 1] == MAX(u, v);
+        if (joined)
+            continue;
         w->join = g_renew(uint32_t, w->join, 3 * (w->n_joins + 1));
         w->join[3 * w->n_joins] = MIN(u, v);
         w->join[3 * w->n_joins + 1] = MAX(u, v);

@@ -256,7 +256,7 @@ static void test_pieces(void)
         g_string_append(s, "<!--");
         guint fill = pad < 200 ? pad : PIECE - 400 + pad; /* the first piece ends in data, or in the head of the file */
         for (guint i = 0; i < fill; i++)
-            g_string_append(s, i % 7 == 0 && pad % 2 ? "ä" : "a");
+            g_string_append(s, (i + pad) % 7 == 0 ? "ä" : "a");
         g_string_append(s, "-->");
         g_string_append(s, root);
         g_assert_cmpuint(s->len, >, PIECE);
@@ -774,6 +774,30 @@ static void test_vein_numbers(void)
     }
 }
 
+/* Where orders are given a vein goes on in the widest edge of its own order, of equals the first; others begin veins. */
+static void test_vein_runs(void)
+{
+#define FORK(order1, width1, order2, width2)                                                                                               \
+    DIRECTED NODE("0", "0", "0") NODE("1", "0", "1") NODE("2", "0", "2") NODE("3", "1", "2")                                               \
+        EDGE_OF("0", "1", DATA("k", "vein") DATA("o", "2") DATA("w", "3"))                                                                 \
+        EDGE_OF("1", "2", DATA("k", "vein") DATA("o", order1) DATA("w", width1))                                                           \
+        EDGE_OF("1", "3", DATA("k", "vein") DATA("o", order2) DATA("w", width2))                                                           \
+        EDGE_OF("2", "3", DATA("k", "anastomosis") DATA("o", "2") DATA("w", "9")) END
+    static const struct {
+        const char *text;
+        uint32_t vein[4];
+    } cases[] = {
+        {FORK("2", "1", "2", "1"), {0, 0, 1, 2}}, {FORK("2", "1", "2", "1.5"), {0, 1, 0, 2}},
+        {FORK("2", "1", "3", "1.5"), {0, 0, 1, 2}}, {FORK("3", "1", "1", "1.5"), {0, 1, 2, 3}},
+    };
+    for (gsize i = 0; i < G_N_ELEMENTS(cases); i++) {
+        Network *net = read_text(cases[i].text);
+        assert_sound(net);
+        ASSERT_ARRAY(net->vein, cases[i].vein, 4);
+        network_free(net);
+    }
+}
+
 /* Directed edges of known kinds in any order of nodes: sorted by depth, anastomoses turned towards the younger end. */
 static void test_sorted(void)
 {
@@ -863,7 +887,7 @@ static void test_margins(void)
     static const char *const texts[] = {
         LEAF("0,0 2,0 2,2 0,2"),
         LEAF("\n0,0\t0,2.0 2e0,2  2,0\n"),                /* the other way round */
-        LEAF("0,0 0,0 2,0 2,2 2,2 2,2 0,2 -0,0 0,0"),     /* closed, points doubled */
+        LEAF("0,0 0,0 2,0 2,2 2,2 2,2.0000001 0,2 -0,0 0,0"), /* closed, points doubled */
     };
     for (gsize i = 0; i < G_N_ELEMENTS(texts); i++) {
         Network *net = read_text(texts[i]);
@@ -943,12 +967,18 @@ static void test_errors(void)
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("v", "-1")) END, IMPORT_ERROR_SYNTAX, "leaf.graphml:3: edge 'a' – 'b': vein is '-1'; *"},
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("v", "2147483648")) END, IMPORT_ERROR_SYNTAX, "*: vein is '2147483648'; it must be *"},
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("w", "0")) END, IMPORT_ERROR_SYNTAX,
-         "leaf.graphml:3: edge 'a' – 'b': width is '0'; it must be a number above 0, from 1e-9 to 1e9, in segments"},
+         "leaf.graphml:3: edge 'a' – 'b': width is '0'; it must be a number above 0, from 1e-24 to 1e24, in segments"},
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("w", "-1")) END, IMPORT_ERROR_SYNTAX, "leaf.graphml:3: edge 'a' – 'b': width is '-1'; *"},
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("f", "0")) END, IMPORT_ERROR_SYNTAX, "leaf.graphml:3: edge 'a' – 'b': flow is '0'; *"},
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("b", "x")) END, IMPORT_ERROR_SYNTAX, "leaf.graphml:3: edge 'a' – 'b': birth is 'x'; *"},
         {UNDIRECTED LINES EDGE_OF("a", "b", DATA("k", "veins")) END, IMPORT_ERROR_SYNTAX,
          "leaf.graphml:3: edge 'a' – 'b': kind is 'veins'; it must be vein or anastomosis"},
+        {"<graphml><key id='k' for='edge' attr.name='kind'><default>bone</default></key><graph>\n" EDGE("a", "b") "</graph></graphml>",
+         IMPORT_ERROR_SYNTAX, "leaf.graphml:2: edge 'a' – 'b': kind is 'bone'; it must be vein or anastomosis"},
+        {"<graphml><key id='y' attr.name='y'><default>high</default></key><graph>\n<node id='a'/></graph></graphml>",
+         IMPORT_ERROR_SYNTAX, "leaf.graphml:2: node 'a': y is 'high'; it must be *"},
+        {"<graphml><key id='s' attr.name='steps'><default>-1</default></key>\n<graph/></graphml>",
+         IMPORT_ERROR_SYNTAX, "leaf.graphml:2: the graph: steps is '-1'; it must be *"},
         {UNDIRECTED LINES "<data key='s'>many</data>" END, IMPORT_ERROR_SYNTAX, "leaf.graphml:3: the graph: steps is 'many'; it must be *"},
         {UNDIRECTED LINES "<data key='m'>0,0 1,0 1;1</data>" END, IMPORT_ERROR_SYNTAX,
          "leaf.graphml:3: the graph: margin has the point '1;1'; it must be points x,y x,y … of numbers from -1e9 to 1e9, in segments"},
@@ -986,6 +1016,44 @@ static void test_errors(void)
             g_error("case %zu: %s\nwanted: %s", i, error->message, cases[i].message);
         g_error_free(error);
         g_assert_null(import_graphml_text(cases[i].text, strlen(cases[i].text), "leaf.graphml", &widths, NULL));
+    }
+}
+
+/* A ring of veins is told as a walk round it, cut after eight nodes, whether its directions are given or not. */
+static void test_rings(void)
+{
+    enum { N = 13, SHOWN = 8 };
+    for (uint32_t step = 0; step < 40; step++) {
+        bool directed = step % 2;
+        GString *s = g_string_new(directed ? DIRECTED : UNDIRECTED);
+        for (uint32_t v = 0; v < N; v++) {
+            Vec2 p = place(40, step, v);
+            g_string_append_printf(s, "<node id='r%u'><data key='x'>%d</data><data key='y'>%d</data></node>", v, (int)(p.x * 1000),
+                                   (int)(p.y * 1000));
+        }
+        for (uint32_t v = 0; v < N; v++) {
+            uint32_t w = (v + 1) % N, turn = !directed && number(41, step, v, 2);
+            g_string_append_printf(s, "<edge source='r%u' target='r%u'><data key='k'>vein</data></edge>", turn ? w : v, turn ? v : w);
+        }
+        g_string_append(s, END);
+        GError *error = NULL;
+        g_assert_null(import_graphml_text(s->str, s->len, "leaf", &widths, &error));
+        g_assert_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH);
+        const char *at = strstr(error->message, "through the nodes ");
+        g_assert_nonnull(at);
+        uint32_t walk[SHOWN];
+        for (int k = 0; k < SHOWN; k++) {
+            at = strstr(at, "'r") + 2;
+            walk[k] = (uint32_t)g_ascii_strtoull(at, NULL, 10);
+            uint32_t turn = k > 1 ? (walk[1] + N - walk[0]) % N : 0; /* once forwards, always forwards */
+            if (k == 1)
+                g_assert_true(walk[1] == (walk[0] + 1) % N || walk[0] == (walk[1] + 1) % N);
+            if (k > 1)
+                g_assert_cmpuint(walk[k], ==, (walk[k - 1] + turn) % N);
+        }
+        g_assert_nonnull(strstr(at, " and 5 more; one of them must be an anastomosis"));
+        g_error_free(error);
+        g_string_free(s, TRUE);
     }
 }
 
@@ -1078,11 +1146,13 @@ int main(int argc, char **argv)
     g_test_add_func("/import/missing", test_missing);
     g_test_add_func("/import/births", test_births);
     g_test_add_func("/import/vein-numbers", test_vein_numbers);
+    g_test_add_func("/import/vein-runs", test_vein_runs);
     g_test_add_func("/import/sorted", test_sorted);
     g_test_add_func("/import/writing", test_writing);
     g_test_add_func("/import/numbers", test_numbers);
     g_test_add_func("/import/margins", test_margins);
     g_test_add_func("/import/errors", test_errors);
+    g_test_add_func("/import/rings", test_rings);
     g_test_add_func("/import/long-names", test_long_names);
     g_test_add_func("/import/files", test_files);
     if (g_test_perf())

@@ -758,6 +758,7 @@ static void test_channels(void)
         {{250, 120, 250, 255}, {40, 118, 248, 255}, 3, CHANNEL_RED, true},
         {{90, 30, 90, 255}, {92, 230, 88, 255}, 3, CHANNEL_GREEN, false},
         {{200, 200, 60, 255}, {202, 199, 220, 255}, 3, CHANNEL_BLUE, false},
+        {{130, 128, 130, 255}, {132, 120, 70, 255}, 3, CHANNEL_BLUE, true},
         {{10, 20, 30, 0}, {12, 22, 28, 255}, 4, CHANNEL_ALPHA, false},
         {{0, 0, 0, 0}, {240, 240, 240, 255}, 4, CHANNEL_ALPHA, false},
     };
@@ -809,6 +810,25 @@ static void test_channel_values(void)
     g_assert_cmpuint(channel_value(s, CHANNEL_ALPHA, 0, 0), ==, 51);
     px[0] = px[1] = px[2] = 0, px[3] = 255;
     g_assert_cmpuint(channel_value(s, CHANNEL_SATURATION, 0, 0), ==, 0);
+    scan_free(s);
+}
+
+/* On paper half in shadow a leaf is told by its colour, not by its shade. */
+static void test_saturation(void)
+{
+    Scan *s = scan_new(60, 60, 3, 8);
+    for (uint32_t i = 0; i < 3600; i++) {
+        bool leaf = i % 60 > 19 && i % 60 < 40 && i / 60 > 19 && i / 60 < 40, shadow = i % 60 < 30;
+        for (uint32_t c = 0; c < 3; c++) {
+            uint32_t colour = leaf ? (c == 1 ? 140 : 55) : 230;
+            ((uint8_t *)s->px)[3 * i + c] = (uint8_t)((shadow ? colour * 2 / 5 : colour) + noise(89, 3 * i + c, 4));
+        }
+    }
+    ThresholdDef def = {CHANNEL_BEST, LEAF_BY_FRAME, -1.0};
+    Threshold t;
+    g_assert_true(threshold_find(s, &def, &t, NULL));
+    g_assert_cmpstr(channel_name(t.channel), ==, "saturation");
+    g_assert_false(t.dark);
     scan_free(s);
 }
 
@@ -868,6 +888,7 @@ int main(int argc, char **argv)
     g_test_add_func("/threshold/otsu_gap", test_otsu_gap);
     g_test_add_func("/threshold/channels", test_channels);
     g_test_add_func("/threshold/channel_values", test_channel_values);
+    g_test_add_func("/threshold/saturation", test_saturation);
     g_test_add_func("/threshold/refused", test_threshold_refused);
     int status = g_test_run();
     g_unlink(path);

@@ -7,6 +7,24 @@
 #include "lib/shape.h"
 #include "venation.h"
 
+static const char *const models[][10] = {
+    {"alchemilla", "growth.initial_length", "160", "growth.final_length", "225", "sources.density", "0.002"},
+    {"cherry", "growth.initial_length", "60", "growth.final_length", "275", "sources.density", "0.001", "veins.kill_distance", "20"},
+    {"dart-density", "growth.final_length", "400"},
+    {"developmental"},
+    {"ginkgo", "growth.final_length", "200"},
+    {"grass", "growth.initial_length", "600", "sources.density", "0.0004"},
+    {"kill-distance", "growth.final_length", "500", "growth.step", "4"},
+    {"orchid", "growth.initial_length", "300", "sources.density", "0.001"},
+    {"poplar", "growth.initial_length", "40", "growth.final_length", "500", "sources.density", "0.001"},
+    {"reticulate", "growth.initial_length", "50", "growth.final_length", "400", "sources.density", "0.001"},
+    {"slow-marginal", "growth.initial_length", "40", "growth.final_length", "160"},
+    {"sweetgum", "growth.initial_length", "60", "growth.final_length", "400", "growth.step", "4", "sources.density", "0.002"},
+    {"tertiary", "growth.initial_length", "40", "growth.final_length", "200", "sources.density", "0.002"},
+    {"toothed", "growth.initial_length", "40", "growth.final_length", "200", "sources.density", "0.002"},
+    {"trillium", "growth.initial_length", "300", "sources.density", "0.001"},
+};
+
 static VenParams *load(const char *model, const char *const *setting)
 {
     GError *error = NULL;
@@ -59,24 +77,6 @@ static void check_bent(const VenShape *s)
     }
 }
 
-static const char *const models[][10] = {
-    {"alchemilla", "growth.initial_length", "160", "growth.final_length", "225", "sources.density", "0.002"},
-    {"cherry", "growth.initial_length", "60", "growth.final_length", "275", "sources.density", "0.001", "veins.kill_distance", "20"},
-    {"dart-density", "growth.final_length", "400"},
-    {"developmental"},
-    {"ginkgo", "growth.final_length", "200"},
-    {"grass", "growth.initial_length", "600", "sources.density", "0.0004"},
-    {"kill-distance", "growth.final_length", "500", "growth.step", "4"},
-    {"orchid", "growth.initial_length", "300", "sources.density", "0.001"},
-    {"poplar", "growth.initial_length", "40", "growth.final_length", "500", "sources.density", "0.001"},
-    {"reticulate", "growth.initial_length", "50", "growth.final_length", "400", "sources.density", "0.001"},
-    {"slow-marginal", "growth.initial_length", "40", "growth.final_length", "160"},
-    {"sweetgum", "growth.initial_length", "60", "growth.final_length", "400", "growth.step", "4", "sources.density", "0.002"},
-    {"tertiary", "growth.initial_length", "40", "growth.final_length", "200", "sources.density", "0.002"},
-    {"toothed", "growth.initial_length", "40", "growth.final_length", "200", "sources.density", "0.002"},
-    {"trillium", "growth.initial_length", "300", "sources.density", "0.001"},
-};
-
 static void test_model(gconstpointer data)
 {
     const char *const *m = data;
@@ -104,6 +104,30 @@ static void test_model(gconstpointer data)
         ven_shape_free(s);
         ven_shape_free(again);
     }
+    ven_leaf_free(leaf);
+    ven_params_free(p);
+}
+
+/* A leaf posed anew is the leaf that was posed so at once; a pose that can't be leaves the old one. */
+static void test_repose(void)
+{
+    VenParams *p = load("poplar", models[8] + 1);
+    VenLeaf *leaf = grow(p);
+    VenShape *s = shape_of(leaf);
+    GError *error = NULL;
+    g_assert_true(ven_params_set(p, "pose.preset", "withered", &error));
+    g_assert_true(ven_shape_pose(s, p, 1, &error));
+    g_assert_true(params_override(leaf->params, "pose.preset=withered", &error));
+    VenShape *once = shape_of(leaf);
+    gsize size = sizeof(Vec3) * s->mesh->n_vertices;
+    g_assert_true(memcmp(s->bent.blade->place, once->bent.blade->place, size) == 0);
+    g_assert_true(ven_params_set(p, "pose.rules", "L999 lift 10", &error));
+    g_assert_false(ven_shape_pose(s, p, 1, &error));
+    g_assert_error(error, POSE_ERROR, POSE_ERROR_VEIN);
+    g_clear_error(&error);
+    g_assert_true(memcmp(s->bent.blade->place, once->bent.blade->place, size) == 0);
+    ven_shape_free(once);
+    ven_shape_free(s);
     ven_leaf_free(leaf);
     ven_params_free(p);
 }
@@ -187,6 +211,7 @@ int main(int argc, char **argv)
         g_test_add_data_func(name, models[i], test_model);
         g_free(name);
     }
+    g_test_add_func("/shape/repose", test_repose);
     g_test_add_func("/shape/blend", test_blend);
     g_test_add_func("/shape/fictitious", test_fictitious);
     return g_test_run();
