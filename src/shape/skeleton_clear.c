@@ -28,7 +28,8 @@ typedef struct {
     uint32_t *cleared_of; /* [trails] index of the cleared sequence, NONE */
 } Job;
 
-Limits clearing_limits(const SkeletonDef *def, double size)
+/* Lengths by which veins are kept apart in a blade of that size. */
+static Limits limits_of(const SkeletonDef *def, double size)
 {
     double clear = MAX(def->clearance, 1e-6 * size);
     return (Limits){.clear = clear, .least = 0.3 * clear, .slope = dtrig_sin(CLAMP(def->min_angle, 0.0, 60.0) * DTRIG_DEGREE)};
@@ -309,7 +310,7 @@ static bool clear_round(Job *j, const Polygon *margin, const SkeletonDef *def, L
 
 Clearing *clearing_new(const Trails *trails, const Polygon *margin, const SkeletonDef *def, GError **error)
 {
-    Limits limits = clearing_limits(def, MAX(margin->box.x1 - margin->box.x0, margin->box.y1 - margin->box.y0));
+    Limits limits = limits_of(def, MAX(margin->box.x1 - margin->box.x0, margin->box.y1 - margin->box.y0));
     Clearing *c = g_new0(Clearing, 1);
     c->cleared = g_array_new(FALSE, FALSE, sizeof(Cleared));
     Job j = {.c = c, .trails = trails, .min_length = def->min_length, .merge = limits.clear, .step = step_part * limits.clear,

@@ -64,9 +64,6 @@ typedef struct {
     GArray *cleared;  /* Cleared; parents before children */
 } Clearing;
 
-/* The widths at which things are kept apart. */
-Limits clearing_limits(const SkeletonDef *def, double size);
-
 /* Simplifies the margin and lays the trails on it, the more important first, each as far as it keeps clear. */
 Clearing *clearing_new(const Trails *trails, const Polygon *margin, const SkeletonDef *def, GError **error);
 void clearing_free(Clearing *c);
