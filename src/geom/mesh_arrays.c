@@ -1,13 +1,123 @@
 #include "geom/hilbert.h"
 #include "geom/mesh_gts.h"
+#include "geom/random.h"
 
 #include <string.h>
+
+enum { RANDOM_MESH = 100 }; /* a stream of random numbers of its own */
+
+/* --- the order of insertion --- */
+
+typedef struct {
+    uint32_t round, point;
+    uint64_t place; /* on the curve, ties broken */
+} Turn;
+
+static int turn_compare(gconstpointer a, gconstpointer b, gpointer unused)
+{
+    const Turn *s = a, *t = b;
+    if (s->round != t->round)
+        return s->round < t->round ? -1 : 1;
+    return (s->place > t->place) - (s->place < t->place);
+}
+
+static double input_length(const Pslg *g, uint32_t input)
+{
+    return vec_dist(g->point[mesh_input_end(g, input, 0)], g->point[mesh_input_end(g, input, 1)]);
+}
+
+/* Half of the points in the last round, a quarter in the one before, … */
+static void random_rounds(const Pslg *g, uint8_t *round, uint32_t last)
+{
+    for (uint32_t i = 0; i < g->n_points; i++) {
+        uint32_t bits = random_block(0, RANDOM_MESH, 0, i).w[0], r = last;
+        for (; r > 0 && bits & 1; bits >>= 1)
+            r--;
+        round[i] = (uint8_t)r;
+    }
+}
+
+/* Long segments go in as soon as faces shrink to their length, or they would have to cut through all the small ones. */
+static void early_rounds(const Pslg *g, uint8_t *round, uint32_t last)
+{
+    double total = 0.0;
+    for (uint32_t s = 0; s < g->n_outline + g->n_segments; s++)
+        total += input_length(g, s);
+    for (uint32_t s = 0; s < g->n_outline + g->n_segments; s++) {
+        double length = input_length(g, s), spacing = total;
+        uint32_t r = 1;
+        for (; r < last && spacing > length; r++)
+            spacing *= 0.5;
+        for (int k = 0; k < 2; k++) {
+            uint8_t *its = &round[mesh_input_end(g, s, k)];
+            *its = r < *its ? (uint8_t)r : *its;
+        }
+    }
+}
+
+static void sort_points(MeshOrder *o, const Pslg *g, const uint8_t *round)
+{
+    Box2 box = box_empty();
+    for (uint32_t i = 0; i < g->n_points; i++)
+        box = box_add(box, g->point[i]);
+    Hilbert curve = hilbert_over(box);
+    Turn *turn = g_new(Turn, g->n_points);
+    for (uint32_t i = 0; i < g->n_points; i++)
+        turn[i] = (Turn){round[i], i, hilbert_place(curve, g->point[i], i)};
+    g_qsort_with_data(turn, (gint)g->n_points, sizeof *turn, turn_compare, NULL);
+    o->point = g_new(uint32_t, g->n_points);
+    for (uint32_t i = 0; i < g->n_points; i++) {
+        o->point[i] = turn[i].point;
+        o->point_start[turn[i].round + 1]++;
+    }
+    for (uint32_t r = 0; r < o->n_rounds; r++)
+        o->point_start[r + 1] += o->point_start[r];
+    g_free(turn);
+}
+
+/* By the round that their later end is in. */
+static void sort_segments(MeshOrder *o, const Pslg *g, const uint8_t *round)
+{
+    uint32_t n = g->n_outline + g->n_segments, at[MESH_ROUNDS];
+    uint8_t *when = g_malloc(n);
+    for (uint32_t s = 0; s < n; s++) {
+        uint8_t a = round[mesh_input_end(g, s, 0)], b = round[mesh_input_end(g, s, 1)];
+        when[s] = a > b ? a : b;
+        o->segment_start[when[s] + 1]++;
+    }
+    for (uint32_t r = 0; r < o->n_rounds; r++)
+        o->segment_start[r + 1] += o->segment_start[r];
+    memcpy(at, o->segment_start, sizeof at);
+    o->segment = g_new(uint32_t, n);
+    for (uint32_t s = 0; s < n; s++)
+        o->segment[at[when[s]]++] = s;
+    g_free(when);
+}
+
+void mesh_order_init(MeshOrder *o, const Pslg *g)
+{
+    *o = (MeshOrder){.n_rounds = 1};
+    while (o->n_rounds < MESH_ROUNDS && g->n_points >> o->n_rounds)
+        o->n_rounds++;
+    uint8_t *round = g_malloc(g->n_points);
+    random_rounds(g, round, o->n_rounds - 1);
+    early_rounds(g, round, o->n_rounds - 1);
+    sort_points(o, g, round);
+    sort_segments(o, g, round);
+    g_free(round);
+}
+
+void mesh_order_clear(MeshOrder *o)
+{
+    g_free(o->point);
+    g_free(o->segment);
+}
 
 /* --- out of GTS --- */
 
 static uint32_t index_of(const GtsVertex *v) { return ((const MeshVertex *)v)->index; }
 
-static void copy_face(const GtsFace *f, uint32_t triangle[3])
+static void copy_face(const GtsTriangle *f, uint32_t triangle[3])
 {
     GtsVertex *corner[3];
     GtsEdge *edge[3];
@@ -51,14 +161,13 @@ Mesh *mesh_copy(const Mesher *m, GArray *pieces)
 
 /* GTS's own way would unlink each object from all others first. Here an edge is met twice, at its ends, and a face three times, at the first
  * visits of its edges: the last time it goes. */
-static void visit_face(GtsFace *f)
+static void visit_face(GtsTriangle *f)
 {
-    guint32 *flags = &f->triangle.object.flags, visits = *flags >> MESH_VISITS_SHIFT;
+    guint32 *flags = &f->object.flags, visits = *flags >> MESH_VISITS_SHIFT;
     if (visits < 2) {
         *flags += 1u << MESH_VISITS_SHIFT;
         return;
     }
-    g_slist_free(f->surfaces);
     mesh_destroy(f);
 }
 
@@ -87,7 +196,6 @@ void mesh_free_gts(Mesher *m)
         g_slist_free(v->segments);
         mesh_destroy(v);
     }
-    gts_object_destroy(&m->surface->object);
 }
 
 /* --- in order: vertices and triangles along Hilbert's curve, as near in the plane is then near in memory --- */

@@ -54,6 +54,8 @@ static double measure(const Vec2 v[3], Vec2 p, double weight[3])
         return 0.0;
     }
     double least = HUGE_VAL;
+    weight[0] = 1.0;
+    weight[1] = weight[2] = 0.0;
     for (int k = 0; k < 3; k++) {
         Vec2 a = v[k], b = v[(k + 1) % 3];
         double t = segment_nearest(a, b, p), d2 = segment_dist2(a, b, p);

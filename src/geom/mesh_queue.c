@@ -5,12 +5,12 @@
  * bytes in each would be the larger part of the queue. Places of faces that are gone hold NULL. */
 enum { BUCKET_MASK = 255 };
 
-static uint32_t bucket_of(const GtsFace *f) { return (f->triangle.object.flags >> MESH_BUCKET_SHIFT) & BUCKET_MASK; }
+static uint32_t bucket_of(const GtsTriangle *f) { return (f->object.flags >> MESH_BUCKET_SHIFT) & BUCKET_MASK; }
 
-static void put(MeshBucket *b, uint32_t at, GtsFace *f)
+static void put(MeshBucket *b, uint32_t at, GtsTriangle *f)
 {
     b->face[at] = f;
-    f->triangle.object.reserved = GUINT_TO_POINTER(at);
+    f->object.reserved = GUINT_TO_POINTER(at);
 }
 
 /* Makes room at the end, by closing up the gaps if they are half of it. */
@@ -18,7 +18,7 @@ static void make_room(MeshBucket *b)
 {
     if (b->live >= b->cap / 2) {
         b->cap = b->cap ? 2 * b->cap : 64;
-        b->face = g_renew(GtsFace *, b->face, b->cap);
+        b->face = g_renew(GtsTriangle *, b->face, b->cap);
         return;
     }
     uint32_t n = 0;
@@ -28,7 +28,7 @@ static void make_room(MeshBucket *b)
     b->end = n;
 }
 
-void mesh_queue_add(Mesher *m, GtsFace *f)
+void mesh_queue_add(Mesher *m, GtsTriangle *f)
 {
     uint32_t urgency = mesh_urgency(m, f);
     if (!urgency)
@@ -38,32 +38,32 @@ void mesh_queue_add(Mesher *m, GtsFace *f)
         make_room(b);
     put(b, b->end++, f);
     b->live++;
-    f->triangle.object.flags |= urgency << MESH_BUCKET_SHIFT;
+    f->object.flags |= urgency << MESH_BUCKET_SHIFT;
     m->top = urgency > m->top ? urgency : m->top;
 }
 
-void mesh_queue_remove(Mesher *m, GtsFace *f)
+void mesh_queue_remove(Mesher *m, GtsTriangle *f)
 {
     uint32_t urgency = bucket_of(f);
     if (!urgency)
         return;
     MeshBucket *b = &m->bucket[urgency];
-    b->face[GPOINTER_TO_UINT(f->triangle.object.reserved)] = NULL;
+    b->face[GPOINTER_TO_UINT(f->object.reserved)] = NULL;
     b->live--;
     while (b->end && !b->face[b->end - 1])
         b->end--;
-    f->triangle.object.reserved = NULL;
-    f->triangle.object.flags &= ~((guint32)BUCKET_MASK << MESH_BUCKET_SHIFT);
+    f->object.reserved = NULL;
+    f->object.flags &= ~((guint32)BUCKET_MASK << MESH_BUCKET_SHIFT);
 }
 
-GtsFace *mesh_queue_take(Mesher *m)
+GtsTriangle *mesh_queue_take(Mesher *m)
 {
     while (m->top && !m->bucket[m->top].live)
         m->top--;
     if (!m->top)
         return NULL;
     const MeshBucket *b = &m->bucket[m->top];
-    GtsFace *f = b->face[b->end - 1];
+    GtsTriangle *f = b->face[b->end - 1];
     mesh_queue_remove(m, f);
     return f;
 }

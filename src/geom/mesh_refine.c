@@ -60,7 +60,7 @@ static Vec2 split_place(const Mesher *m, const MeshPiece *e)
 
 static double size_from(const GtsVertex *v, Vec2 p) { return ((const MeshVertex *)v)->size + vec_dist(mesh_place(v), p); }
 
-static GtsEdge *half_new(Mesher *m, const MeshPiece *e, GtsVertex *a, GtsVertex *b)
+static MeshPiece *half_new(const MeshPiece *e, GtsVertex *a, GtsVertex *b)
 {
     MeshPiece *half = (MeshPiece *)gts_object_clone((GtsObject *)e);
     half->waiting = false;
@@ -68,43 +68,24 @@ static GtsEdge *half_new(Mesher *m, const MeshPiece *e, GtsVertex *a, GtsVertex 
     half->gts.segment.v2 = b;
     a->segments = g_slist_prepend(a->segments, half);
     b->segments = g_slist_prepend(b->segments, half);
-    return &half->gts;
-}
-
-/* The face of e to put v into: one that v, which rounding puts a little beside e, is not within. GTS then makes a triangle of e and v that is
- * flat or inside out, and the search for edges to flip does away with it. */
-static GtsFace *face_to_split(const GtsEdge *e, GtsVertex *v)
-{
-    GtsVertex *corner[3];
-    GtsEdge *edge[3];
-    GSList *t = e->triangles;
-    if (!t->next)
-        return t->data;
-    mesh_corners(t->data, corner, edge);
-    int k = edge[0] == e ? 0 : edge[1] == e ? 1 : 2;
-    bool within = gts_point_orientation(&corner[k]->p, &corner[(k + 1) % 3]->p, &v->p) > 0.0;
-    return within ? t->next->data : t->data;
+    return half;
 }
 
 static void check_piece(Mesher *m, MeshPiece *e);
 static void check_around(Mesher *m, GtsVertex *v);
 
-/* In the way of GTS's own conforming: pieces made first are found by the insertion, which takes them for its new edges. */
 static void split(Mesher *m, MeshPiece *e)
 {
     GtsVertex *a = e->gts.segment.v1, *b = e->gts.segment.v2;
     Vec2 p = split_place(m, e);
     MeshVertex *v = mesh_vertex_new(m, p, e->input);
     v->size = fmin(size_from(a, p), size_from(b, p));
-    GtsEdge *first = half_new(m, e, a, &v->gts), *second = half_new(m, e, &v->gts, b);
-    bool margin = !e->gts.triangles->next;
-    e->gts.segment.object.klass = (GtsObjectClass *)gts_edge_class(); /* free to be flipped */
-    gts_delaunay_add_vertex_to_face(m->surface, &v->gts, face_to_split(&e->gts, &v->gts));
-    if (margin)
-        gts_object_destroy(&e->gts.segment.object);
+    MeshPiece *first = half_new(e, a, &v->gts), *second = half_new(e, &v->gts, b);
+    mesh_find_cavity(m, NULL, e, &v->gts);
+    mesh_fill_cavity(m, &v->gts, e);
     check_around(m, &v->gts);
-    check_piece(m, (MeshPiece *)first);
-    check_piece(m, (MeshPiece *)second);
+    check_piece(m, first);
+    check_piece(m, second);
 }
 
 static bool too_many(const Mesher *m) { return m->n_faces > m->limit; }
@@ -214,7 +195,7 @@ static double floor_at(const Mesher *m, const MeshVertex *p, const MeshVertex *q
     return fmax(m->def->floor, floor_part * fmin(fmin(p->size, q->size), m->side));
 }
 
-uint32_t mesh_urgency(const Mesher *m, const GtsFace *f)
+uint32_t mesh_urgency(const Mesher *m, const GtsTriangle *f)
 {
     GtsVertex *corner[3];
     GtsEdge *edge[3];
@@ -232,7 +213,7 @@ uint32_t mesh_urgency(const Mesher *m, const GtsFace *f)
     int other = (k + 1) % 3, another = (k + 2) % 3;
     /* sin² of the least angle, which is opposite the shortest edge, over what is asked for */
     double quality = twice_area * twice_area / (length2[other] * length2[another] * m->sine2);
-    if (quality >= 1.0)
+    if (!(quality < 1.0))
         return 0;
     double floor = floor_at(m, (MeshVertex *)corner[k], (MeshVertex *)corner[other]);
     if (length2[k] < floor * floor || (mesh_is_piece(m, edge[other]) && mesh_is_piece(m, edge[another])) ||
@@ -241,7 +222,7 @@ uint32_t mesh_urgency(const Mesher *m, const GtsFace *f)
     return 1 + (uint32_t)((1.0 - quality) * (MESH_BUCKETS / 2 - 2));
 }
 
-static Vec2 circumcentre(const GtsFace *f)
+static Vec2 circumcentre(const GtsTriangle *f)
 {
     GtsVertex *corner[3];
     GtsEdge *edge[3];
@@ -251,40 +232,21 @@ static Vec2 circumcentre(const GtsFace *f)
     return vec2(o.x + (b.y * aa - a.y * bb) * k, o.y + (a.x * bb - b.x * aa) * k);
 }
 
-/* Enlists the pieces that p, in a face, would encroach upon: those round the faces whose circumcircle holds it, which it would replace. */
-static bool check_cavity(Mesher *m, GtsFace *at, GtsVertex *p)
+/* Enlists the pieces that p would encroach upon: they bound its cavity. */
+static bool check_cavity(Mesher *m, GtsVertex *p)
 {
-    const guint32 seen = 1u << MESH_SEEN_SHIFT;
-    g_ptr_array_set_size(m->cavity, 0);
-    g_ptr_array_add(m->cavity, at);
-    at->triangle.object.flags |= seen;
     for (uint32_t i = 0; i < m->cavity->len; i++) {
-        GtsVertex *corner[3];
-        GtsEdge *edge[3];
-        mesh_corners(m->cavity->pdata[i], corner, edge);
-        for (int k = 0; k < 3; k++) {
-            if (mesh_is_piece(m, edge[k])) {
-                if (encroaches(m, p, edge[k]))
-                    enlist(m, (MeshPiece *)edge[k]);
-                continue;
-            }
-            GtsFace *next = mesh_neighbour(m->cavity->pdata[i], edge[k]);
-            if (next->triangle.object.flags & seen)
-                continue;
-            GtsVertex *apex = mesh_opposite(next, edge[k]);
-            if (gts_point_in_circle(&p->p, &corner[(k + 1) % 3]->p, &corner[k]->p, &apex->p) > 0.0) {
-                next->triangle.object.flags |= seen;
-                g_ptr_array_add(m->cavity, next);
-            }
-        }
+        const GtsTriangle *t = m->cavity->pdata[i];
+        GtsEdge *const edge[3] = {t->e1, t->e2, t->e3};
+        for (int k = 0; k < 3; k++)
+            if (mesh_is_piece(m, edge[k]) && encroaches(m, p, edge[k]))
+                enlist(m, (MeshPiece *)edge[k]);
     }
-    for (uint32_t i = 0; i < m->cavity->len; i++)
-        ((GtsFace *)m->cavity->pdata[i])->triangle.object.flags &= ~seen;
     return m->encroached->len > 0;
 }
 
 /* Adds the circumcentre, or splits the pieces that it would encroach upon. */
-static bool improve(Mesher *m, GtsFace *f)
+static bool improve(Mesher *m, GtsTriangle *f)
 {
     GtsVertex *corner[3];
     GtsEdge *edge[3];
@@ -295,10 +257,15 @@ static bool improve(Mesher *m, GtsFace *f)
     MeshVertex *v = mesh_vertex_new(m, p, MESH_NONE);
     v->size = fmin(fmin(size_from(corner[0], p), size_from(corner[1], p)), size_from(corner[2], p));
     MeshPiece *wall = NULL;
-    GtsFace *at = mesh_walk(m, f, &v->gts, &wall);
-    if (at && !check_cavity(m, at, &v->gts) && !gts_delaunay_add_vertex_to_face(m->surface, &v->gts, at))
-        return !too_many(m);
-    gts_object_destroy(&v->gts.p.object);
+    GtsTriangle *at = mesh_walk(m, f, &v->gts, &wall);
+    if (at) {
+        mesh_find_cavity(m, at, NULL, &v->gts);
+        if (!check_cavity(m, &v->gts)) {
+            mesh_fill_cavity(m, &v->gts, NULL);
+            return !too_many(m);
+        }
+    }
+    mesh_destroy(v);
     g_ptr_array_set_size(m->vertex, (gint)m->vertex->len - 1);
     if (wall && is_long(m, &wall->gts))
         enlist(m, wall); /* rounding put the circumcentre beyond it */
@@ -322,7 +289,7 @@ bool mesh_refine(Mesher *m)
 {
     m->refining = true;
     queue_all(m);
-    GtsFace *f;
+    GtsTriangle *f;
     bool good = true;
     while (good && (f = mesh_queue_take(m)))
         good = improve(m, f);

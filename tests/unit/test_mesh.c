@@ -1,6 +1,7 @@
 /* The mesher against what a conforming Delaunay mesh must be, checked anew by brute force; the graph check and the locator against plain
  * twins. */
 #include <glib.h>
+#include <time.h>
 
 #include "geom/outline.h"
 #include "plain_leaf.h"
@@ -342,31 +343,51 @@ static void test_leaves(void)
     g_test_message("%u segments of veins, %u triangles beside small angles", veins, excused);
 }
 
-/* Two degrees between veins; nothing may run away at any least angle, and beyond the angles of input all is well up to 28°. */
+/* Two degrees between veins: nothing may run away, and beyond the angles of the input all is well up to 30°, and but for one in a thousand at
+ * 33°. */
 static void test_small_angles(void)
 {
     const double angle[] = {20.0, 28.0, 30.0, 33.0};
-    uint32_t none = 0, all = 0;
-    for (uint32_t k = 0; k < 24; k++) {
-        Pslg *g = plain_leaf((int)(k % LEAF_KINDS), 80, k, 0.15, k < 12 ? 2.0 : 15.0, 0.0005);
+    for (uint32_t k = 0; k < 12; k++) {
+        Pslg *g = plain_leaf((int)(k % LEAF_KINDS), 80, k, 0.15, k % 4 ? 2.0 : 15.0, 0.0005);
         for (uint32_t i = 0; i < G_N_ELEMENTS(angle); i++) {
             MeshDef def = {.min_angle = angle[i]};
-            if (angle[i] <= 28.0) {
-                uint32_t n;
-                mesh_well(g, def, &n);
-                g_assert_cmpuint(n, <, 200 * g->n_points);
-                continue;
-            }
             Mesh *m = mesh_or_fail(g, &def);
-            g_assert_cmpuint(m->n_triangles, <, 1000 * g->n_points);
-            none += check_mesh(g, &def, m).none;
-            all += m->n_triangles;
+            Small small = check_mesh(g, &def, m);
+            g_assert_cmpuint(small.none, <=, angle[i] > 30.0 ? m->n_triangles / 1000 : 0);
+            g_assert_cmpuint(m->n_triangles, <, (angle[i] > 30.0 ? 1000 : 200) * g->n_points);
             mesh_free(m);
         }
         pslg_free(g);
     }
-    g_test_message("beyond 28 degrees %u of %u triangles are below without an excuse", none, all);
-    g_assert_cmpuint(none, <, all / 50);
+}
+
+/* Triangles beside an angle of the input may be as narrow as about half of it. */
+static void test_wedges(void)
+{
+    const double angle[] = {0.5, 2.0, 5.0, 10.0, 20.0, 30.0, 45.0, 59.0};
+    for (uint32_t k = 0; k < G_N_ELEMENTS(angle) * 6; k++) {
+        PlainLeaf l;
+        plain_leaf_init(&l, LEAF_ELLIPSE, 40, 0);
+        uint32_t hub = plain_add_point(&l, vec2(0.05, 0.02));
+        double wedge = angle[k / 6] * DTRIG_DEGREE, bound = k % 2 ? 20.0 : 30.0;
+        for (uint32_t i = 0; i < 2; i++) {
+            double t = 0.3 * k + i * wedge, r = i ? 0.3 + 0.05 * (k % 6) : 0.5;
+            plain_add_segment(&l, hub, plain_add_point(&l, vec_add(plain_point(&l, hub), vec2(r * dtrig_cos(t), r * dtrig_sin(t)))));
+        }
+        Pslg *g = plain_graph(&l);
+        plain_leaf_clear(&l);
+        MeshDef def = {.min_angle = bound};
+        Mesh *m = mesh_or_fail(g, &def);
+        g_assert_cmpuint(check_mesh(g, &def, m).none, ==, 0);
+        for (uint32_t i = 0; i < 3 * m->n_triangles; i++) {
+            const uint32_t *t = m->triangle[i / 3];
+            double at = degrees_at(m->vertex[t[i % 3]], m->vertex[t[(i + 1) % 3]], m->vertex[t[(i + 2) % 3]]);
+            g_assert_cmpfloat(at, >=, fmin(bound - 1e-6, 0.5 * angle[k / 6]));
+        }
+        mesh_free(m);
+        pslg_free(g);
+    }
 }
 
 /* A fan of segments from one point, as close as a tenth of a degree, of lengths at random; and as many as a thousand. */
@@ -389,6 +410,42 @@ static void test_fans(void)
         g_assert_cmpuint(triangles, <, 100 * (g->n_points + 20 * n));
         pslg_free(g);
     }
+}
+
+static Pslg *curve(uint32_t n, bool chord)
+{
+    PlainLeaf l;
+    plain_leaf_init(&l, LEAF_ELLIPSE, n, 0);
+    if (chord)
+        plain_add_segment(&l, 0, n / 2);
+    Pslg *g = plain_graph(&l);
+    plain_leaf_clear(&l);
+    return g;
+}
+
+static double seconds_of(const Pslg *g, MeshDef def)
+{
+    clock_t start = clock();
+    mesh_free(mesh_or_fail(g, &def));
+    return (double)(clock() - start) / CLOCKS_PER_SEC;
+}
+
+/* A curve of many points with nothing inside, and one with a segment along it that all faces lie across: fans of thousands of triangles, which
+ * must not take time in their square. */
+static void test_large_holes(void)
+{
+    Pslg *hole = curve(10000, false), *halves = curve(10000, true);
+    g_assert_cmpuint(mesh_well(hole, (MeshDef){.min_angle = 20.0}, NULL), ==, 0);
+    g_assert_cmpuint(mesh_well(halves, (MeshDef){.min_angle = 20.0}, NULL), ==, 0);
+    pslg_free(hole);
+    pslg_free(halves);
+    hole = curve(30000, false);
+    halves = curve(30000, true);
+    double alone = seconds_of(hole, (MeshDef){0});
+    g_assert_cmpfloat(alone, <, 15.0);
+    g_assert_cmpfloat(seconds_of(halves, (MeshDef){0}), <, 4.0 * alone + 0.2);
+    pslg_free(hole);
+    pslg_free(halves);
 }
 
 /* A vein whose tip is on the margin, one that runs up to the margin as near as may be, and one along it. */
@@ -468,7 +525,7 @@ static void test_outlines(void)
 static void test_whole_numbers(void)
 {
     uint32_t meshed = 0, segments = 0;
-    for (uint32_t k = 0; k < 400; k++) {
+    for (uint32_t k = 0; k < 300; k++) {
         uint32_t n = 4 + k % 9, grid = k % 2 ? 6 : 16, wanted = 12;
         Pslg *g = pslg_new(n + wanted, n, 0);
         g->segment = g_malloc0_n(wanted, sizeof *g->segment);
@@ -498,8 +555,8 @@ static void test_whole_numbers(void)
         pslg_free(g);
     }
     g_test_message("%u graphs, %u segments", meshed, segments);
-    g_assert_cmpuint(meshed, >, 150);
-    g_assert_cmpuint(segments, >, 500);
+    g_assert_cmpuint(meshed, >, 120);
+    g_assert_cmpuint(segments, >, 400);
 }
 
 /* Scale, and a place far from the origin. */
@@ -563,7 +620,7 @@ static void test_same_bytes(void)
     a.first = mesh_or_fail(a.g, &(MeshDef){.min_angle = 28.0, .max_area = 1e-3});
     g_assert_cmpuint(a.g->n_segments, >, 30);
     mesh_again(&a);
-    GThread *thread[3]; /* at the same time: GTS has but one lock */
+    GThread *thread[3]; /* at the same time */
     Again other[3];
     for (int k = 0; k < 3; k++) {
         other[k] = a;
@@ -576,6 +633,31 @@ static void test_same_bytes(void)
     g_assert_cmpuint(a.different, ==, 0);
     mesh_free(a.first);
     pslg_free(a.g);
+}
+
+static guint64 hash(guint64 h, gconstpointer data, gsize n)
+{
+    const uint8_t *byte = data;
+    for (gsize i = 0; i < n; i++)
+        h = (h ^ byte[i]) * 1099511628211u; /* FNV */
+    return h;
+}
+
+/* On every compiler and machine. The numbers change when the mesher does, and not else. */
+static void test_pinned_bytes(void)
+{
+    guint64 h = 14695981039346656037u;
+    for (uint32_t k = 0; k < 12; k++) {
+        Pslg *g = plain_leaf((int)(k % LEAF_KINDS), 80, k, 0.1, k % 2 ? 5.0 : 40.0, 0.005);
+        Mesh *m = mesh_or_fail(g, &(MeshDef){.min_angle = 20.0 + k, .max_area = k % 3 ? 0.0 : 0.001});
+        h = hash(h, m->vertex, m->n_vertices * sizeof *m->vertex);
+        h = hash(h, m->triangle, m->n_triangles * sizeof *m->triangle);
+        h = hash(h, m->boundary, m->n_boundary * sizeof *m->boundary);
+        h = hash(h, m->vein, m->n_vein * sizeof *m->vein);
+        mesh_free(m);
+        pslg_free(g);
+    }
+    g_assert_cmphex(h, ==, 0x7cfcfa96813705b6u);
 }
 
 /* --- limits --- */
@@ -746,7 +828,7 @@ static bool is_clear(const Pslg *g, double least)
 static void test_check_large(void)
 {
     uint32_t clear = 0, tried = 0;
-    for (uint32_t k = 0; k < 400; k++, tried++) {
+    for (uint32_t k = 0; k < 240; k++, tried++) {
         Pslg *g = plain_leaf((int)(k % 3), 60, k / 40, 0.08, 50.0, 0.02);
         uint32_t i = random_block(1, 8, k, 0).w[0] % g->n_points, j = random_block(1, 8, k, 1).w[0] % g->n_points;
         double reach = k % 2 ? 0.05 : 0.03, u[2];
@@ -906,12 +988,15 @@ int main(int argc, char **argv)
     g_test_add_func("/mesh/lattice", test_lattice);
     g_test_add_func("/mesh/leaves", test_leaves);
     g_test_add_func("/mesh/small-angles", test_small_angles);
+    g_test_add_func("/mesh/wedges", test_wedges);
     g_test_add_func("/mesh/fans", test_fans);
+    g_test_add_func("/mesh/large-holes", test_large_holes);
     g_test_add_func("/mesh/margin", test_at_margin);
     g_test_add_func("/mesh/outlines", test_outlines);
     g_test_add_func("/mesh/whole-numbers", test_whole_numbers);
     g_test_add_func("/mesh/far-and-small", test_far_and_small);
     g_test_add_func("/mesh/same-bytes", test_same_bytes);
+    g_test_add_func("/mesh/pinned-bytes", test_pinned_bytes);
     g_test_add_func("/mesh/limits", test_limits);
     g_test_add_func("/mesh/check/twin", test_check_twin);
     g_test_add_func("/mesh/check/large", test_check_large);
