@@ -3,7 +3,8 @@
 #include "geom/dtrig.h"
 #include "geom/mesh_gts.h"
 
-/* Points and segments nearer to each other than this part of the largest coordinate are refused: seven digits are left for what lies between. */
+/* Points and segments nearer to each other than this part of the largest coordinate are refused: seven digits are left for what lies
+ * between. */
 static const double least_part = 1e-9;
 /* Pieces shorter than this part are not split, for want of digits. */
 static const double tiny_part = 1e-12;
@@ -33,8 +34,7 @@ static gpointer make_classes(gpointer unused)
     return c;
 }
 
-/* GTS keeps classes for good, by name, so they are made once in a process, with GTS's own that we use. That is all of the state that GTS shares
- * between meshes. */
+/* GTS keeps classes for good, by name, so they are made once in a process, with GTS's own that we use. */
 static const Classes *get_classes(void)
 {
     static GOnce once = G_ONCE_INIT;
@@ -133,11 +133,14 @@ Mesh *mesh_new(const Pslg *g, const MeshDef *def, GError **error)
 {
     if (!check_def(def, error) || !pslg_check(g, least_part * largest_coordinate(g), error) || !check_area(g, def, error))
         return NULL;
+    static GMutex lock; /* GTS's predicates keep the arithmetic's control word in a global while they work */
     GArray *pieces = g_array_new(FALSE, FALSE, sizeof(MeshPart));
     Mesher m;
+    g_mutex_lock(&lock);
     mesher_init(&m, g, def);
     Mesh *mesh = make(&m, pieces, error);
     mesher_clear(&m);
+    g_mutex_unlock(&lock);
     if (mesh)
         mesh_arrange(mesh, g, pieces);
     g_array_free(pieces, TRUE);

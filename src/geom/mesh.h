@@ -11,8 +11,8 @@
 #define MESH_ERROR mesh_error_quark()
 GQuark mesh_error_quark(void);
 typedef enum {
-    MESH_ERROR_INPUT,   /* crossing or repeated parts, parts too near to each other, a vein outside the outline; a definition out of range */
-    MESH_ERROR_SIZE,    /* more triangles than max_triangles would be needed */
+    MESH_ERROR_INPUT, /* crossing or repeated parts, parts too near to each other, a vein outside the outline; numbers out of range */
+    MESH_ERROR_SIZE,  /* more triangles than max_triangles would be needed */
 } MeshError;
 
 /* A planar straight-line graph: points, and segments that meet at common points only. The first n_outline points are the outline,
@@ -26,9 +26,9 @@ typedef struct {
 Pslg *pslg_new(uint32_t n_points, uint32_t n_outline, uint32_t n_segments);
 void pslg_free(Pslg *g);
 
-/* What a mesher needs: finite points (up to 1e50), a counter-clockwise outline, no two points nearer than `least` to each other, no point nearer
- * than that to a segment it is no end of, no two segments that cross, no segment twice, none outside the outline. The error names the
- * points. O(n log n) expected. */
+/* What a mesher needs: finite points (up to 1e50), a counter-clockwise outline, no two points nearer than `least` to each other, no point
+ * nearer than that to a segment it is no end of, no two segments that cross, no segment twice, none outside the outline. The error names
+ * the points. O(n log n) expected. */
 gboolean pslg_check(const Pslg *g, double least, GError **error);
 
 typedef struct {
@@ -51,27 +51,29 @@ typedef struct {
 
 /* Meshes the inside of the outline. What holds always, at small angles of the input too:
  * - the triangles fill the outline, and every segment of the graph is a run of mesh edges;
- * - conforming Delaunay: no vertex lies within the circle through a triangle's corners (veins do not count as walls; vertices that are hidden
- *   behind the margin, across a sinus, do not count), nor within the circle over an edge on a vein or the margin. So no weight of finite
- *   volumes is negative, at the margin neither;
+ * - conforming Delaunay: no vertex lies within the circle through a triangle's corners (veins do not count as walls; vertices that are
+ *   hidden behind the margin, across a sinus, do not count), nor within the circle over an edge on a vein or the margin. So no weight of
+ *   finite volumes is negative, at the margin neither;
  * - no triangle is larger than max_area.
+ *
  * No angle is less than min_angle, but
  * - where two segments of the graph meet at less;
  * - in triangles whose shortest edge spans two segments that meet at less than 60°, at equal distance from their common point (angles of
  *   about half of that at least);
- * - in triangles with an edge shorter than `floor`, or than 1/64 of the distance between features near by. That does not occur up to
- *   30°, and beyond in a triangle of ten thousand: it is there to end what might not end.
+ * - in triangles with an edge shorter than `floor`, or than 1/64 of the distance between features near by. That does not occur up to 30°,
+ *   and beyond in a triangle of ten thousand: it is there to end what might not end.
  *
  * Narrow places between segments are filled with triangles of their width, so they may take many: set max_triangles.
  *
- * Deterministic; for any thread. Expected linear time in the result: 4 µs and 400 bytes a triangle. NULL with an error for a definition out of range, for a graph that pslg_check refuses at a billionth of the largest coordinate
- * (MESH_ERROR_INPUT), and where max_triangles do not suffice (MESH_ERROR_SIZE). */
+ * Deterministic. For any thread, but GTS keeps process-wide state, so calls wait for each other. Expected linear time in the result: 4 µs
+ * and 400 bytes a triangle. NULL with an error for a definition out of range, for a graph that pslg_check refuses at a billionth of the
+ * largest coordinate (MESH_ERROR_INPUT), and where max_triangles do not suffice (MESH_ERROR_SIZE). */
 Mesh *mesh_new(const Pslg *g, const MeshDef *def, GError **error);
 void mesh_free(Mesh *m);
 
-/* Finds the triangle that holds p, or the one nearest to it (of equals the first), and the barycentric coordinates of p, or of the triangle's point
- * nearest to it: never negative, 1 in sum. O(log n) expected. The mesh must outlive the locator, which any threads may share. Of points
- * that are not finite nothing is asked: triangle 0. */
+/* Finds the triangle that holds p, or the one nearest to it (of equals the first), and the barycentric coordinates of p, or of the
+ * triangle's point nearest to it: never negative, 1 in sum. O(log n) expected. The mesh must outlive the locator, which any threads may
+ * share. Of points that are not finite nothing is asked: triangle 0. */
 typedef struct MeshLocator MeshLocator;
 MeshLocator *mesh_locator_new(const Mesh *m);
 void mesh_locator_free(MeshLocator *l);

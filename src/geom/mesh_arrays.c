@@ -159,8 +159,8 @@ Mesh *mesh_copy(const Mesher *m, GArray *pieces)
     return mesh;
 }
 
-/* GTS's own way would unlink each object from all others first. Here an edge is met twice, at its ends, and a face three times, at the first
- * visits of its edges: the last time it goes. */
+/* GTS's own way would unlink each object from all others first. Here an edge is met twice, at its ends, and a face three times, at the
+ * first visits of its edges: the last time it goes. */
 static void visit_face(GtsTriangle *f)
 {
     guint32 *flags = &f->object.flags, visits = *flags >> MESH_VISITS_SHIFT;

@@ -108,8 +108,8 @@ static inline uint32_t mesh_input_end(const Pslg *g, uint32_t input, int k)
     return k == 0 ? input : input + 1 < g->n_outline ? input + 1 : 0;
 }
 
-/* mesh_triangulate.c: the constrained Delaunay triangulation of the blade. FALSE when a segment can't be put in, which pslg_check is there to
- * prevent. */
+/* mesh_triangulate.c: the constrained Delaunay triangulation of the blade. FALSE when a segment can't be put in, which pslg_check is there
+ * to prevent. */
 bool mesh_triangulate(Mesher *m);
 
 /* Steps of it that refinement takes too. */
@@ -139,8 +139,8 @@ void mesh_queue_clear(Mesher *m);
 
 /* mesh_arrays.c: what goes in, and the result.
  *
- * Points go in in rounds of doubling size, each sorted along Hilbert's curve (biased randomised insertion order; Amenta, Choi and Rote 2003):
- * random enough to keep faces few at any vertex, orderly enough to find each face by a short walk. */
+ * Points go in in rounds of doubling size, each sorted along Hilbert's curve (biased randomised insertion order; Amenta, Choi and Rote
+ * 2003): random enough to keep faces few at any vertex, orderly enough to find each face by a short walk. */
 typedef struct {
     uint32_t n_rounds, *point, *segment; /* point[point_start[r]] … are those of round r; segments follow the points of a round */
     uint32_t point_start[MESH_ROUNDS + 1], segment_start[MESH_ROUNDS + 1];

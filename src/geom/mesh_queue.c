@@ -1,8 +1,8 @@
 #include "geom/mesh_gts.h"
 
-/* Buckets are stacks: refining on where it has just been is kind to caches (a quarter of the time) and gives as few triangles as taking turns. A
- * face knows its place there, in GtsObject's spare field, and its bucket, in spare bits of the flags: most faces never want to be refined, and
- * bytes in each would be the larger part of the queue. Places of faces that are gone hold NULL. */
+/* Buckets are stacks: refining on where it has just been is kind to caches (a quarter of the time) and gives as few triangles as taking
+ * turns. A face knows its place there, in GtsObject's spare field, and its bucket, in spare bits of the flags: most faces never want to be
+ * refined, and bytes in each would be the larger part of the queue. Places of faces that are gone hold NULL. */
 enum { BUCKET_MASK = 255 };
 
 static uint32_t bucket_of(const GtsTriangle *f) { return (f->object.flags >> MESH_BUCKET_SHIFT) & BUCKET_MASK; }

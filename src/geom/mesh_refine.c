@@ -171,8 +171,8 @@ bool mesh_conform(Mesher *m)
 
 /* --- refining faces --- */
 
-/* Whether p and q lie on two input segments that meet at less than 60°, equally far from where they do: the distance between them comes from the
- * angle there, and no refinement can help it (Miller, Pav and Walkington 2003). */
+/* Whether p and q lie on two input segments that meet at less than 60°, equally far from where they do: the distance between them comes
+ * from the angle there, and no refinement can help it (Miller, Pav and Walkington 2003). */
 static bool is_across_angle(const Mesher *m, const GtsVertex *p, const GtsVertex *q)
 {
     uint32_t s = ((const MeshVertex *)p)->input, t = ((const MeshVertex *)q)->input;

@@ -85,8 +85,8 @@ static void remove_edges(Mesher *m)
         mesh_destroy(m->dead->pdata[i]);
 }
 
-/* By hand: GTS would look through the lists of both ends for each edge that goes, and a vertex may have as many as there are faces. Here each
- * list is gone through once. */
+/* By hand: GTS would look through the lists of both ends for each edge that goes, and a vertex may have as many as there are faces. Here
+ * each list is gone through once. */
 void mesh_remove_faces(Mesher *m, const GPtrArray *face)
 {
     g_ptr_array_set_size(m->dead, 0);
@@ -304,8 +304,8 @@ static void reverse(GPtrArray *a)
     }
 }
 
-/* A piece that was made beforehand becomes an edge by itself if its ends come to be joined; else it is cut in. New faces come before old ones
- * go, so that edges of both stay. */
+/* A piece that was made beforehand becomes an edge by itself if its ends come to be joined; else it is cut in. New faces come before old
+ * ones go, so that edges of both stay. */
 static bool put_in(Mesher *m, MeshPiece *e)
 {
     if (e->gts.triangles)

@@ -2,8 +2,8 @@
  *
  *     bench_mesh [--quick]
  *
- * Times are CPU time of mesh_new, all in: check, triangulation, refinement, copying out and freeing; those in input order are of GTS's plain
- * insertion of the points alone. Each run is a process of its own, so that its peak memory is its own. */
+ * Times are CPU time of mesh_new, all in: check, triangulation, refinement, copying out and freeing; those in input order are of GTS's
+ * plain insertion of the points alone. Each run is a process of its own, so that its peak memory is its own. */
 #include <gts.h>
 #include <stdio.h>
 #include <string.h>

@@ -343,8 +343,8 @@ static void test_leaves(void)
     g_test_message("%u segments of veins, %u triangles beside small angles", veins, excused);
 }
 
-/* Two degrees between veins: nothing may run away, and beyond the angles of the input all is well up to 30°, and but for one in a thousand at
- * 33°. */
+/* Two degrees between veins: nothing may run away, and beyond the angles of the input all is well up to 30°, and but for one in a thousand
+ * at 33°. */
 static void test_small_angles(void)
 {
     const double angle[] = {20.0, 28.0, 30.0, 33.0};
@@ -430,8 +430,8 @@ static double seconds_of(const Pslg *g, MeshDef def)
     return (double)(clock() - start) / CLOCKS_PER_SEC;
 }
 
-/* A curve of many points with nothing inside, and one with a segment along it that all faces lie across: fans of thousands of triangles, which
- * must not take time in their square. */
+/* A curve of many points with nothing inside, and one with a segment along it that all faces lie across: fans of thousands of triangles,
+ * which must not take time in their square. */
 static void test_large_holes(void)
 {
     Pslg *hole = curve(10000, false), *halves = curve(10000, true);

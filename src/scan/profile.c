@@ -1,0 +1,332 @@
+#include "scan/profile.h"
+
+#include <string.h>
+
+#include "geom/march.h"
+#include "geom/ring.h"
+#include "scan/axis.h"
+#include "scan/mask.h"
+#include "scan/stalk.h"
+
+#define NEAR 0.02          /* given points nearer to the outline than this share of the leaf's extent are meant to lie on it */
+#define FAR 0.1            /* given points farther outside are a mistake */
+/* A petiole does not show the base when it meets the blade far from either end of the line of best symmetry, as a share of that line, and on a
+ * line that is less symmetric by so much: it is bent over the blade. */
+#define ASIDE 0.25
+#define LESS_SYMMETRIC 0.04
+
+ProfileDef profile_def_default(void)
+{
+    return (ProfileDef){.threshold = {CHANNEL_BEST, LEAF_BY_FRAME, -1.0}, .least_area = 0.05, .square = 1, .subpixel = true, .tolerance = 1.0};
+}
+
+void profile_free(Profile *p)
+{
+    if (!p)
+        return;
+    polygon_free(p->outline);
+    g_free(p->hole_start);
+    g_free(p->hole);
+    g_free(p);
+}
+
+static bool check(const Scan *s, const ProfileDef *d, GError **error)
+{
+    const char *name = NULL;
+    double value = 0.0, least = 0.0, most = 65535.0;
+#define RANGE(n, v, a, b)                                                                                                            \
+    if (!name && !((v) >= (a) && (v) <= (b))) {                                                                                      \
+        name = n;                                                                                                                    \
+        value = (v);                                                                                                                 \
+        least = (a);                                                                                                                 \
+        most = (b);                                                                                                                  \
+    }
+    RANGE("square size", (double)d->square, 1.0, 65535.0)
+    RANGE("tolerance", d->tolerance, 0.0, 65535.0)
+    RANGE("closing radius", d->close, 0.0, 65535.0)
+    RANGE("opening radius", d->open, 0.0, 65535.0)
+    RANGE("least area", d->least_area, 0.0, 1.0)
+#undef RANGE
+    if (name) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE, "%s %g: allowed are %g … %g", name, value, least, most);
+        return false;
+    }
+    if (d->each && (d->has_base || d->has_tip)) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE, "a base or tip can be given for one leaf, but not when each leaf is captured");
+        return false;
+    }
+    return true;
+}
+
+/* What is at hand while one leaf of a scan is captured. */
+typedef struct {
+    const Scan *scan;
+    const ProfileDef *def;
+    const Threshold *threshold;
+    const Mask *mask;
+    MaskBox box;
+    Stalk stalk;
+    Profile *out;
+} Capture;
+
+static double level_of(const void *user, uint32_t x, uint32_t y)
+{
+    const Capture *c = user;
+    return channel_value(c->scan, c->threshold->channel, x, y);
+}
+
+/* From columns and rows of the leaf's box to y-up pixel units. */
+static Vec2 upright(const Capture *c, Vec2 p)
+{
+    return vec2(c->box.x0 + p.x + 0.5, c->mask->height - (c->box.y0 + p.y + 0.5));
+}
+
+static void keep_holes(Profile *out, const MarchLoops *l, const Polygon *outline)
+{
+    out->hole_start = g_new(uint32_t, (gsize)l->n + 1);
+    out->hole = g_new(Vec2, l->start[l->n]);
+    out->hole_start[0] = 0;
+    for (uint32_t k = 0; k < l->n; k++) {
+        uint32_t n = l->start[k + 1] - l->start[k], at = out->hole_start[out->n_holes];
+        if (l->area[k] > 0.0 || !polygon_contains(outline, l->p[l->start[k]]))
+            continue;
+        memcpy(out->hole + at, l->p + l->start[k], n * sizeof(Vec2));
+        out->hole_start[++out->n_holes] = at + n;
+    }
+    out->hole = g_renew(Vec2, out->hole, out->hole_start[out->n_holes] + 1);
+}
+
+/* Pixels of the holes. */
+static double hole_area(const Capture *c, uint8_t stalk)
+{
+    uint64_t n = 0;
+    Mask w = mask_window(c->mask, c->box);
+    for (uint32_t y = 0; y < w.height; y++)
+        for (uint32_t x = 0; x < w.width; x++)
+            n += (*mask_at(&w, x, y) & (MASK_HOLE | stalk)) == MASK_HOLE;
+    return (double)n;
+}
+
+static void measure(const Capture *c, const MarchLoops *l, const Polygon *outline)
+{
+    Profile *o = c->out;
+    o->area = outline->area;
+    o->perimeter = ring_length(outline);
+    o->nodes = outline->n;
+    if (!c->def->keep_holes)
+        return;
+    o->area -= hole_area(c, c->def->keep_stalk ? 0 : MASK_STALK);
+    keep_holes(o, l, outline);
+}
+
+/* The outline as traced, with or without the petiole; NULL when the square is too large to meet the leaf. */
+static Polygon *trace(Capture *c, bool stalk)
+{
+    uint8_t test = MASK_THIS | (c->def->keep_holes ? MASK_HOLE : 0) | (stalk ? 0 : MASK_STALK);
+    MarchField f = {.px = c->mask->px, .width = c->mask->width, .height = c->mask->height, .test = test, .want = MASK_THIS,
+                    .x0 = c->box.x0, .y0 = c->box.y0, .x1 = c->box.x1, .y1 = c->box.y1,
+                    .level = c->def->subpixel ? level_of : NULL, .user = c, .threshold = c->threshold->level};
+    MarchLoops *l = march_loops(&f, c->def->square);
+    uint32_t k = march_largest(l);
+    Polygon *p = NULL;
+    if (k < l->n) {
+        p = polygon_new(l->p + l->start[k], l->start[k + 1] - l->start[k]);
+        if (stalk == c->def->keep_stalk)
+            measure(c, l, p);
+    }
+    march_loops_free(l);
+    return p;
+}
+
+static double extent(const Polygon *p) { return vec_dist(vec2(p->box.x0, p->box.y0), vec2(p->box.x1, p->box.y1)); }
+
+/* A point given by hand: moved onto the outline when near to it. */
+static bool take_given(const Polygon *p, const char *name, Vec2 given, Vec2 *out, GError **error)
+{
+    *out = polygon_nearest(p, given, NULL);
+    double far = vec_dist(*out, given), size = extent(p);
+    if (far <= NEAR * size)
+        return true;
+    if (!(far <= FAR * size) && !polygon_contains(p, given)) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE,
+                    "%s (%g, %g): lies %.0f pixels outside the leaf, which spans x %.0f … %.0f, y %.0f … %.0f (y up)", name, given.x, given.y, far, p->box.x0, p->box.x1, p->box.y0, p->box.y1);
+        return false;
+    }
+    *out = given;
+    return true;
+}
+
+static Vec2 farthest(const Polygon *p, Vec2 from)
+{
+    Vec2 best = p->v[0];
+    for (uint32_t i = 1; i < p->n; i++)
+        if (vec_dist2(p->v[i], from) > vec_dist2(best, from))
+            best = p->v[i];
+    return best;
+}
+
+/* Base by petiole, if that lies about where a leaf can have it, else by symmetry. */
+static void find_base(Capture *c, const Axis *axis)
+{
+    Profile *o = c->out;
+    Vec2 tip, stalk = upright(c, c->stalk.base);
+    double best = axis_find(axis, &o->base, &tip), near = ASIDE * vec_dist(o->base, tip);
+    o->base_from = BASE_AXIS;
+    if (!o->has_stalk || (vec_dist(stalk, o->base) > near && vec_dist(stalk, tip) > near &&
+                          axis_symmetry(axis, stalk, axis->middle) < best - LESS_SYMMETRIC))
+        return;
+    o->base = c->def->keep_stalk ? stalk : polygon_nearest(axis->outline, stalk, NULL);
+    o->base_from = BASE_STALK;
+}
+
+/* `whole` is the outline that is wanted, `blade` the one without petiole. */
+static bool find_ends(Capture *c, const Polygon *whole, const Polygon *blade, GError **error)
+{
+    Profile *o = c->out;
+    Axis axis;
+    axis_init(&axis, blade);
+    bool ok = true;
+    if (c->def->has_base) {
+        o->base_from = BASE_GIVEN;
+        ok = take_given(whole, "base", c->def->base, &o->base, error);
+    } else {
+        find_base(c, &axis);
+    }
+    if (ok && c->def->has_tip)
+        ok = take_given(whole, "tip", c->def->tip, &o->tip, error);
+    else
+        o->tip = farthest(blade, o->base);
+    if (ok && !(vec_dist2(o->base, o->tip) > 0.0)) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE, "base and tip are the same point (%g, %g)", o->base.x, o->base.y);
+        ok = false;
+    }
+    o->symmetry = axis_symmetry(&axis, o->base, o->tip);
+    axis_clear(&axis);
+    return ok;
+}
+
+/* The polygon with its boundary point nearest to q as vertex 0; put in where no vertex is near. */
+static Polygon *start_at(const Polygon *p, Vec2 q)
+{
+    const double near2 = 0.05 * 0.05;
+    uint32_t edge = 0, n = p->n;
+    Vec2 at = polygon_nearest(p, q, &edge), *v = g_new(Vec2, (gsize)n + 1);
+    uint32_t next = edge + 1 < n ? edge + 1 : 0, first = vec_dist2(p->v[edge], at) <= near2 ? edge : next, m = 0;
+    if (vec_dist2(p->v[first], at) > near2)
+        v[m++] = at;
+    for (uint32_t i = 0; i < n; i++)
+        v[m++] = p->v[(first + i) % n];
+    Polygon *out = polygon_new(v, m);
+    g_free(v);
+    return out;
+}
+
+static uint32_t nearest_vertex(const Polygon *p, Vec2 q)
+{
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < p->n; i++)
+        if (vec_dist2(p->v[i], q) < vec_dist2(p->v[best], q))
+            best = i;
+    return best;
+}
+
+static Polygon *finish(const Capture *c, const Polygon *traced)
+{
+    const Profile *o = c->out;
+    bool by_stalk = c->def->keep_stalk && o->has_stalk && o->base_from == BASE_STALK;
+    Polygon *tipped = start_at(traced, o->tip), *based = start_at(tipped, by_stalk ? o->stalk_end : o->base);
+    bool *must = g_new0(bool, based->n);
+    must[nearest_vertex(based, o->tip)] = true;
+    Polygon *p = ring_simplify(based, c->def->tolerance, must);
+    g_free(must);
+    polygon_free(tipped);
+    polygon_free(based);
+    return p;
+}
+
+static bool capture_leaf(Capture *c, GError **error)
+{
+    Profile *o = c->out;
+    Mask window = mask_window(c->mask, c->box);
+    o->mm_per_pixel = c->scan->mm_per_pixel;
+    o->has_stalk = stalk_find(&window, &c->stalk);
+    if (o->has_stalk) {
+        o->stalk_end = upright(c, c->stalk.end);
+        o->stalk_width = c->stalk.width;
+        o->stalk_length = c->stalk.length;
+    }
+    Polygon *blade = trace(c, false), *whole = c->def->keep_stalk ? trace(c, true) : blade;
+    if (!blade) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: squares of %u pixels step over the largest part, %u × %u pixels",
+                    c->def->square, window.width, window.height);
+        if (whole != blade)
+            polygon_free(whole);
+        return false;
+    }
+    bool ok = find_ends(c, whole, blade, error);
+    if (ok)
+        o->outline = finish(c, whole);
+    polygon_free(blade);
+    if (whole != blade)
+        polygon_free(whole);
+    return ok;
+}
+
+/* One leaf or each of them; small ones among several that the square steps over are left out. */
+static bool capture_all(Capture *c, const GArray *parts, GPtrArray *out, GError **error)
+{
+    bool ok = true;
+    for (guint i = 0; ok && i < (c->def->each ? parts->len : 1); i++) {
+        const Component *part = &g_array_index(parts, Component, i);
+        c->box = part->box;
+        c->out = g_new0(Profile, 1);
+        g_ptr_array_add(out, c->out);
+        mask_take(c->mask, part);
+        ok = capture_leaf(c, i == 0 ? error : NULL);
+        if (!ok && i > 0) { /* nothing else can fail where no ends are given */
+            g_ptr_array_remove_index(out, out->len - 1);
+            ok = true;
+        }
+        Mask window = mask_window(c->mask, c->box);
+        mask_clear(&window, (uint8_t)~(MASK_LEAF | MASK_SEEN));
+    }
+    return ok;
+}
+
+GPtrArray *profile_capture(const Scan *s, const ProfileDef *def, Threshold *used, GError **error)
+{
+    Threshold t;
+    if (!check(s, def, error) || !threshold_find(s, &def->threshold, &t, error))
+        return NULL;
+    if (used)
+        *used = t;
+    Mask m = {s->width, s->height, s->width, g_try_malloc((gsize)s->width * s->height)};
+    if (!m.px) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE, "no memory to mark %u × %u pixels", s->width, s->height);
+        return NULL;
+    }
+    threshold_apply(s, &t, m.px);
+    if (def->close > 0.0) {
+        mask_dilate(&m, MASK_LEAF, MASK_LEAF, def->close);
+        mask_erode(&m, MASK_LEAF, MASK_LEAF, def->close);
+    }
+    if (def->open > 0.0) {
+        mask_erode(&m, MASK_LEAF, MASK_LEAF, def->open);
+        mask_dilate(&m, MASK_LEAF, MASK_LEAF, def->open);
+    }
+    GArray *parts = mask_components(&m, def->least_area);
+    GPtrArray *out = g_ptr_array_new_with_free_func((GDestroyNotify)profile_free);
+    Capture c = {.scan = s, .def = def, .threshold = &t, .mask = &m};
+    bool ok = parts->len > 0;
+    if (!ok)
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: nothing is %s than %g in the %s channel but the edge of the image",
+                    t.dark ? "darker" : "lighter", t.level, channel_name(t.channel));
+    ok = ok && capture_all(&c, parts, out, error);
+    g_array_free(parts, TRUE);
+    g_free(m.px);
+    if (!ok) {
+        g_ptr_array_free(out, TRUE);
+        return NULL;
+    }
+    return out;
+}

@@ -1,0 +1,54 @@
+/* Which pixels are leaf (Hong 2005, § 5.2.1): a channel of the image, a threshold on it, and the side of it that is leaf. */
+#ifndef SCAN_THRESHOLD_H
+#define SCAN_THRESHOLD_H
+
+#include "scan/scan.h"
+
+/* Where a pixel is partly transparent, colours are taken as seen on white. */
+typedef enum {
+    CHANNEL_BEST, /* the one with the greatest separability, of equals the first; without greenness; saturation only where it is better by 0.01 */
+    CHANNEL_RED,
+    CHANNEL_GREEN,
+    CHANNEL_BLUE,
+    CHANNEL_GREY,       /* (299 R + 587 G + 114 B) / 1000 */
+    CHANNEL_SATURATION, /* (greatest - least) / greatest: shadows on white have little, leaves much; not in proportion to a pixel's share of leaf */
+    CHANNEL_GREENNESS,  /* (2 G - R - B) / 4, from the middle of the scale: misses what is brown or red of a leaf */
+    CHANNEL_ALPHA,
+    CHANNEL_COUNT
+} Channel;
+
+typedef enum {
+    LEAF_BY_FRAME, /* the leaf is on the side that fewer pixels along the image's frame are on; of equals the darker */
+    LEAF_DARK,     /* below the threshold */
+    LEAF_LIGHT,    /* not below it */
+} LeafSide;
+
+typedef struct {
+    Channel channel;
+    LeafSide side;
+    double level; /* 0 … 255 whatever the depth; below 0: Otsu's, which parts the pixels into two classes of least variance */
+} ThresholdDef;
+
+typedef struct {
+    Channel channel;
+    bool dark;           /* the leaf is below the level */
+    double level;        /* in values of the channel: 0 … 255, or 0 … 65535 of a 16-bit scan */
+    double separability; /* variance between the two classes / total variance (Otsu 1979, η): 0 … 1 */
+    double contrast;     /* between the classes' means, share of the whole scale */
+    double frame;        /* share of the frame's pixels that are background */
+} Threshold;
+
+/* False with SCAN_ERROR_NO_LEAF when the image is all of one shade (contrast below 2 %), with SCAN_ERROR_VALUE for a channel that the image
+ * lacks or a level beyond 255. */
+bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GError **error);
+
+/* Sets mask[height][width] to 1 for leaf and 0 for background. */
+void threshold_apply(const Scan *s, const Threshold *t, uint8_t *mask);
+
+/* A pixel's value in a channel other than CHANNEL_BEST. */
+uint32_t channel_value(const Scan *s, Channel channel, uint32_t x, uint32_t y);
+
+/* "best", "red", … */
+const char *channel_name(Channel channel);
+
+#endif
