@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-enum { RANDOM_MESH = 100 }; /* a stream of random numbers of its own */
-
 /* --- the order of insertion --- */
 
 typedef struct {

@@ -164,7 +164,7 @@ static Tube petiole_tube(const Tube *midrib, const SolidDef *def, double gathere
         at = vec3_add(at, vec3_scale(vec3_sub(vec3_scale(back, c), vec3_scale(up, s)), step));
     }
     for (uint32_t i = 0; i < t.n; i++) {
-        t.rest[i] = midrib->rest[0];
+        t.rest[i] = midrib->rest[MIN(1, midrib->n - 1)]; /* at the base itself the map may already show what is beside the leaf */
         t.node[i] = midrib->node[0];
     }
     return t;
