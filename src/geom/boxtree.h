@@ -35,6 +35,9 @@ void boxtree_nearest(const Boxtree *t, const Vec2 *pos, Vec2 p, bool (*filter)(c
  * has a rival that is nearer to all of the box. Returns how many; more than `cap` when they did not fit, and then `out` is of no use. */
 uint32_t boxtree_nearest_to(const Boxtree *t, const Vec2 *pos, Box2 box, double bound2, uint32_t *out, uint32_t cap);
 
+/* Points that may be nearer to some place in box `a` than to some place in box `b`. Returns how many; more than `cap` when they did not fit. */
+uint32_t boxtree_nearer(const Boxtree *t, const Vec2 *pos, Box2 a, Box2 b, uint32_t *out, uint32_t cap);
+
 static inline bool box_meets(Box2 a, Box2 b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
 
 #endif

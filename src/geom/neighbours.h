@@ -6,7 +6,7 @@
  * Any two neighbours are seen from s more than 60° apart, so there are at most five.
  *
  * Points never move and never go (where they do, the neighbourhood is found anew), so a node once excluded stays excluded and an
- * update looks at new nodes alone. Each hood keeps a zone: a box outside which no new node can change it. */
+ * update looks at new nodes alone. Each hood has a zone: a box outside which no new node can change it. */
 #ifndef GEOM_NEIGHBOURS_H
 #define GEOM_NEIGHBOURS_H
 
@@ -14,21 +14,13 @@
 #include "geom/quadtree.h"
 #include "geom/vec.h"
 
-enum { HOOD_MAX = 6, HOOD_WITNESSES = 8 };
+enum { HOOD_MAX = 6, HOOD_WITNESSES = 7 };
 
+/* Neighbours of one source: indices alone, since places and distances are had from the field and s. */
 typedef struct {
-    Vec2 p;
-    double d2; /* squared distance from s */
-    uint32_t v;
-} Neighbour;
-
-/* Neighbours of one source. */
-typedef struct {
-    Vec2 s;
-    uint32_t n, n_witnesses;
-    Neighbour m[HOOD_MAX]; /* [n] the neighbours */
-    Neighbour w[HOOD_WITNESSES]; /* [n_witnesses] other nodes near s: excluded themselves, they exclude what lies behind them */
-    Box2 zone;
+    uint32_t m[HOOD_MAX];       /* [n] the neighbours */
+    uint32_t w[HOOD_WITNESSES]; /* [n_witnesses] other nodes near s: excluded themselves, they exclude what lies behind them */
+    uint8_t n, n_witnesses;
 } Hood;
 
 /* The points: positions, their index, which of them s may see (NULL: all), and a box that holds all that ever come. */
@@ -40,19 +32,20 @@ typedef struct {
     const void *user; /* for sees */
 } Field;
 
-/* Relative neighbourhood of s from scratch. Exact. O(log n) expected. */
+/* Relative neighbourhood of s from scratch, nearest first. Exact. O(log n) expected. */
 void hood_find(Hood *h, const Field *field, Vec2 s);
 
 /* Takes in new nodes, all of them in field->tree already; prunes whole boxes of them by what the neighbours exclude. Returns whether the
- * neighbourhood changed. Exact: the result is that of hood_find. */
-bool hood_update(Hood *h, const Field *field, const Boxtree *fresh);
+ * neighbourhood changed; old neighbours come before new ones. Exact: the neighbours are those of hood_find. */
+bool hood_update(Hood *h, const Field *field, Vec2 s, const Boxtree *fresh);
+
+Box2 hood_zone(const Hood *h, const Field *field, Vec2 s);
 
 /* Voronoi cell of s among the nodes: its edges' owners are the Delaunay neighbours of s in V ∪ {s}. */
 typedef struct {
-    uint32_t n, cap;
-    uint32_t *v;  /* [n] owner of edge i, NO_POINT for the border of a huge box */
-    Vec2 *p;      /* [n] its position relative to s */
     Vec2 *corner; /* [n] relative to s: edge i runs from corner i to corner i + 1 */
+    uint32_t *v;  /* [n] owner of edge i, NO_POINT for the border of a huge box; in the same block of memory */
+    uint32_t n, cap;
 } Cell;
 
 void cell_clear(Cell *c);
@@ -61,6 +54,8 @@ void cell_clear(Cell *c);
 void urquhart_find(Hood *h, Cell *c, const Field *field, Vec2 s);
 
 /* Takes in new nodes as hood_update does. */
-bool urquhart_update(Hood *h, Cell *c, const Field *field, const Boxtree *fresh);
+bool urquhart_update(Hood *h, Cell *c, const Field *field, Vec2 s, const Boxtree *fresh);
+
+Box2 urquhart_zone(const Cell *c, const Field *field, Vec2 s);
 
 #endif

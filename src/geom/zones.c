@@ -69,14 +69,16 @@ uint32_t zones_cell(const Zones *z, Vec2 p)
     return column(p.y, z->field.y0, z->cell, z->ny[0]) * z->nx[0] + column(p.x, z->field.x0, z->cell, z->nx[0]);
 }
 
-Box2 zones_cell_box(const Zones *z, uint32_t cell)
-{
-    double x = z->field.x0 + z->cell * (cell % z->nx[0]), y = z->field.y0 + z->cell * (cell / z->nx[0]);
-    double slack = 1e-6 * z->cell; /* a place may have been rounded into its cell */
-    return (Box2){x - slack, y - slack, x + z->cell + slack, y + z->cell + slack};
-}
-
 void zones_set(Zones *z, uint32_t item, Box2 zone) { z->zone[item] = widen(zone); }
+
+void zones_lift(Zones *z, uint32_t item, Vec2 p)
+{
+    uint32_t cell = zones_cell(z, p), x = cell % z->nx[0], y = cell / z->nx[0];
+    for (uint32_t l = 0; l < z->levels; l++, x /= 2, y /= 2) {
+        ZoneBox *b = &z->box[l][(gsize)y * z->nx[l] + x];
+        *b = join(*b, z->zone[item]);
+    }
+}
 
 void zones_add(Zones *z, Vec2 p, Box2 zone)
 {
@@ -85,14 +87,11 @@ void zones_add(Zones *z, Vec2 p, Box2 zone)
         z->next = g_renew(uint32_t, z->next, z->cap);
         z->zone = g_renew(ZoneBox, z->zone, z->cap);
     }
-    uint32_t cell = zones_cell(z, p), x = cell % z->nx[0], y = cell / z->nx[0];
+    uint32_t cell = zones_cell(z, p);
     z->next[z->n] = z->head[cell];
     z->zone[z->n] = widen(zone);
-    for (uint32_t l = 0; l < z->levels; l++, x /= 2, y /= 2) {
-        ZoneBox *b = &z->box[l][(gsize)y * z->nx[l] + x];
-        *b = join(*b, z->zone[z->n]);
-    }
-    z->head[cell] = z->n++;
+    z->head[cell] = z->n;
+    zones_lift(z, z->n++, p);
 }
 
 void zones_raise(Zones *z)
@@ -116,7 +115,7 @@ typedef struct {
     uint32_t level, x, y;
 } Square;
 
-uint32_t zones_visit_cells(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out)
+uint32_t zones_visit(const Zones *z, uint32_t level, const Boxtree *points, const Vec2 *pos, uint32_t *out)
 {
     Square stack[64];
     uint32_t depth = 0, n = 0;
@@ -127,7 +126,7 @@ uint32_t zones_visit_cells(const Zones *z, const Boxtree *points, const Vec2 *po
         Box2 box = as_box(z->box[q.level][c]);
         if (box_is_empty(box) || !boxtree_any_in(points, pos, box))
             continue;
-        if (q.level == 0) {
+        if (q.level == level) {
             out[n++] = c;
             continue;
         }
@@ -136,17 +135,6 @@ uint32_t zones_visit_cells(const Zones *z, const Boxtree *points, const Vec2 *po
             for (uint32_t x = 2 * q.x; x <= 2 * q.x + 1 && x < z->nx[l]; x++)
                 stack[depth++] = (Square){l, x, y};
     }
-    return n;
-}
-
-uint32_t zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out)
-{
-    uint32_t *cell = g_new(uint32_t, zones_cells(z)), n_cells = zones_visit_cells(z, points, pos, cell), n = 0;
-    for (uint32_t k = 0; k < n_cells; k++)
-        for (uint32_t i = z->head[cell[k]]; i != UINT32_MAX; i = z->next[i])
-            if (boxtree_any_in(points, pos, as_box(z->zone[i])))
-                out[n++] = i;
-    g_free(cell);
     return n;
 }
 

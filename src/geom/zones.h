@@ -32,23 +32,28 @@ void zones_reset(Zones *z);
 uint32_t zones_cell(const Zones *z, Vec2 p);
 static inline uint32_t zones_cells(const Zones *z) { return z->nx[0] * z->ny[0]; }
 
-/* The cell's square; those at the border stand for all that lies beyond. */
-Box2 zones_cell_box(const Zones *z, uint32_t cell);
-
 /* Adds item number z->n (items are numbered as they are added) at place p. */
 void zones_add(Zones *z, Vec2 p, Box2 zone);
 
-/* Gives an item another zone. The boxes above it stay what they are until zones_raise. */
+/* Gives an item another zone. The boxes above it stay what they are until zones_raise or, if the zone has grown, zones_lift. */
 void zones_set(Zones *z, uint32_t item, Box2 zone);
+
+/* Widens the boxes above the item, which lies at p, to hold its zone. */
+void zones_lift(Zones *z, uint32_t item, Vec2 p);
 
 /* Recomputes all boxes from the items' zones. O(items + cells). */
 void zones_raise(Zones *z);
 
-/* Appends to `out` the items whose zone may hold one of the points, in a fixed order; returns how many. */
-uint32_t zones_visit(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out);
+/* The item's zone, rounded outward. */
+static inline Box2 zones_get(const Zones *z, uint32_t item)
+{
+    ZoneBox b = z->zone[item];
+    return (Box2){(double)b.x0, (double)b.y0, (double)b.x1, (double)b.y1};
+}
 
-/* The same for whole cells: those with an item whose zone may hold one. */
-uint32_t zones_visit_cells(const Zones *z, const Boxtree *points, const Vec2 *pos, uint32_t *out);
+/* Writes to `out` the squares of a level whose box may hold one of the points, numbered row by row; returns how many. A square of level l
+ * has 2^l cells a side. */
+uint32_t zones_visit(const Zones *z, uint32_t level, const Boxtree *points, const Vec2 *pos, uint32_t *out);
 
 /* Whether an item lies nearer to p than r; place[i] is where item i lies. */
 bool zones_any_within(const Zones *z, const Vec2 *place, Vec2 p, double r);

@@ -34,22 +34,33 @@ const char *end_reason_text(EndReason r)
 /* Moves a source with the blade. Tags stay with the nodes that keep in its neighbourhood. */
 static void carry_source(Simulation *s, uint32_t k)
 {
-    Source *src = &s->source[k];
-    Hood old = src->hood;
-    uint8_t tagged = src->tagged;
-    s->place[k] = src->hood.s = blade_place(s->blade, src->material);
+    Source *src = s->source ? &s->source[k] : NULL, old = {0};
+    if (src)
+        old = *src;
+    s->place[k] = blade_place(s->blade, s->material[k]);
     source_look(s, k);
-    s->idle[k] = 0;
+    s->mark[k] &= (uint8_t)~MARK_IDLE;
+    if (!src)
+        return;
     src->tagged = src->spent = 0;
     for (uint32_t i = 0; i < src->hood.n; i++)
-        for (uint32_t j = 0; j < old.n; j++)
-            if (src->hood.m[i].v == old.m[j].v)
-                src->tagged |= (uint8_t)((tagged >> j & 1) << i);
+        for (uint32_t j = 0; j < old.hood.n; j++)
+            if (src->hood.m[i] == old.hood.m[j])
+                src->tagged |= (uint8_t)((old.tagged >> j & 1) << i);
+}
+
+static void carry_sources(uint32_t first, uint32_t last, void *user)
+{
+    Simulation *s = user;
+    for (uint32_t k = first; k < last; k++)
+        if (source_is_alive(s, k))
+            carry_source(s, k);
 }
 
 /* Nonuniform growth carries nodes and sources along; distances change their ratios, so neighbourhoods are found anew. */
 static void carry_along(Simulation *s)
 {
+    enum { GRAIN = 8 };
     Veins *v = &s->veins;
     Box2 field = s->blade->widest;
     for (uint32_t i = 0; i < v->n; i++) {
@@ -59,9 +70,8 @@ static void carry_along(Simulation *s)
     quadtree_reset(&v->tree, box_grow(field, 4.0));
     for (uint32_t i = 0; i < v->n; i++)
         quadtree_add(&v->tree, v->pos[i], i);
-    for (uint32_t k = 0; k < s->n_sources; k++)
-        if (source_is_alive(s, k))
-            carry_source(s, k);
+    s->counts.updates += sources_alive(s);
+    pool_for(s->pool, s->n_sources, GRAIN, carry_sources, s);
     sources_sort(s);
 }
 
@@ -165,6 +175,8 @@ Simulation *simulation_new(const SimulationDef *def, GError **error)
     Simulation *s = g_new0(Simulation, 1);
     s->def = *def;
     s->blade = blade;
+    s->pool = pool_new(def->threads);
+    s->unused_arrival = NO_POINT;
     s->reach = reach_new(def->leaf, def->sinus_depth);
     if (reach_is_trivial(s->reach)) {
         reach_free(s->reach);
@@ -176,6 +188,8 @@ Simulation *simulation_new(const SimulationDef *def, GError **error)
         s->veins.material = g_new(Vec2, 1); /* grows with the nodes */
     double least = source_spacing(def, blade);
     zones_init(&s->zones, field, (def->pattern == PATTERN_OPEN ? 8.0 : 2.0) * least);
+    s->share = g_new(Share, SHARES);
+    s->touched = g_new(uint32_t, zones_cells(&s->zones));
     if (!sources_prepare(s, error) || !plant_seeds(s, error)) {
         simulation_free(s);
         return NULL;
@@ -187,21 +201,29 @@ void simulation_free(Simulation *s)
 {
     if (!s)
         return;
-    for (uint32_t k = 0; k < s->n_sources; k++)
-        cell_clear(&s->source[k].cell);
+    for (uint32_t k = 0; s->cell && k < s->n_sources; k++)
+        cell_clear(&s->cell[k]);
+    pool_free(s->pool);
     reach_free(s->reach);
     veins_clear(&s->veins);
     zones_clear(&s->zones);
     blade_free(s->blade);
-    g_free(s->source);
     g_free(s->place);
-    g_free(s->idle);
+    g_free(s->birth);
+    g_free(s->mark);
+    g_free(s->material);
     g_free(s->near);
     g_free(s->near2);
+    g_free(s->source);
+    g_free(s->cell);
+    g_free(s->arrival);
+    g_free(s->paths.bits);
     g_free(s->waiting);
+    g_free(s->share);
     g_free(s->pull);
     g_free(s->pulled);
     g_free(s->fresh);
+    quadtree_clear(&s->young);
     boxtree_clear(&s->fresh_tree);
     g_free(s->touched);
     g_free(s);

@@ -11,98 +11,51 @@ static double vein_clearance(const Simulation *s)
     return MAX(s->def.birth_distance_veins, s->def.kill_distance) * s->blade->unit;
 }
 
-/* A source sees a node unless the blade's margin comes between them, decided when the younger of the two is born. */
-static bool sees(const void *user, uint32_t node)
-{
-    const Eye *eye = user;
-    const Simulation *s = eye->sim;
-    Vec2 a = eye->src->hood.s, b = s->veins.pos[node];
-    if (s->blade->moving) {
-        a = vec_scale(eye->src->material, 1.0 / s->def.growth.initial_length);
-        b = vec_scale(s->veins.material[node], 1.0 / s->def.growth.initial_length);
-        return reach_sees(s->reach, a, b);
-    }
-    double scale = 1.0 / blade_scale_at(s->blade, MAX(eye->src->birth, s->veins.birth[node]));
-    return reach_sees(s->reach, vec_scale(a, scale), vec_scale(b, scale));
-}
+/* ---- placement ---- */
 
-Field source_field(const Simulation *s, const Source *src, Eye *eye)
+/* Squares so small that two places in one are nearer to each other than the clearance ever is. */
+static void paths_prepare(Simulation *s)
 {
-    *eye = (Eye){s, src};
-    Vec2 c = s->veins.tree.centre;
-    double h = s->veins.tree.half;
-    return (Field){s->veins.pos, &s->veins.tree, {c.x - h, c.y - h, c.x + h, c.y + h}, s->reach ? sees : NULL, eye};
-}
-
-void source_look(Simulation *s, uint32_t k)
-{
-    Source *src = &s->source[k];
-    Eye eye;
-    Field f = source_field(s, src, &eye);
-    if (s->def.pattern == PATTERN_OPEN) {
-        s->near2[k] = HUGE_VAL;
-        s->near[k] = quadtree_nearest(f.tree, src->hood.s, HUGE_VAL, f.sees, f.user, &s->near2[k]);
-    } else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE) {
-        hood_find(&src->hood, &f, src->hood.s);
-    } else {
-        urquhart_find(&src->hood, &src->cell, &f, src->hood.s);
-    }
-    s->counts.updates++;
-}
-
-/* Outside this box no new node can concern slot k. */
-static Box2 zone_of(const Simulation *s, uint32_t k)
-{
-    if (s->def.pattern == PATTERN_CLOSED)
-        return s->source[k].hood.zone;
-    Vec2 p = s->place[k], c = s->veins.tree.centre;
-    double h = s->veins.tree.half;
-    if (s->near[k] == NO_POINT)
-        return (Box2){c.x - h, c.y - h, c.x + h, c.y + h};
-    return disc_box(p, s->near2[k]);
-}
-
-static void reserve(Simulation *s)
-{
-    if (s->n_sources < s->cap_sources)
+    Paths *t = &s->paths;
+    Box2 b = field_box(s);
+    double side = 0.7 * MAX(s->def.birth_distance_veins, s->def.kill_distance); /* the unit shrinks, to 1 */
+    double nx = (b.x1 - b.x0) / side + 1.0, ny = (b.y1 - b.y0) / side + 1.0;
+    if (s->blade->moving || !(nx * ny < 1 << 26))
         return;
-    s->cap_sources = MAX(s->cap_sources * 2, 256);
-    s->source = g_renew(Source, s->source, s->cap_sources);
-    s->place = g_renew(Vec2, s->place, s->cap_sources);
-    s->idle = g_renew(uint8_t, s->idle, s->cap_sources);
-    s->near = g_renew(uint32_t, s->near, s->cap_sources);
-    s->near2 = g_renew(double, s->near2, s->cap_sources);
+    *t = (Paths){vec2(b.x0, b.y0), 1.0 / side, (uint32_t)nx, NULL, 0};
+    t->bits = g_new0(uint8_t, (gsize)(nx * ny) / 8 + (gsize)nx + 1);
 }
 
-static void source_add(Simulation *s, Vec2 p)
+static inline gsize path_square(const Paths *t, Vec2 p)
 {
-    reserve(s);
-    uint32_t k = s->n_sources++;
-    s->source[k] = (Source){.birth = s->blade->step};
-    s->source[k].hood.s = p;
-    s->source[k].material = s->blade->moving ? blade_material(s->blade, p) : p;
-    s->place[k] = p;
-    s->idle[k] = 0;
-    source_look(s, k);
-    zones_add(&s->zones, p, zone_of(s, k));
-    s->n_unsorted++;
-    s->counts.placed++;
+    return (gsize)((p.y - t->corner.y) * t->scale) * t->nx + (gsize)((p.x - t->corner.x) * t->scale);
 }
 
-void source_remove(Simulation *s, uint32_t k)
+static void paths_update(Simulation *s)
 {
-    cell_clear(&s->source[k].cell);
-    s->place[k] = vec2((double)NAN, (double)NAN);
-    s->idle[k] = 1;
-    s->near2[k] = -1.0;
-    zones_set(&s->zones, k, box_empty());
-    s->n_removed++;
+    Paths *t = &s->paths;
+    for (; t->bits && t->n < s->veins.n; t->n++) {
+        gsize i = path_square(t, s->veins.pos[t->n]);
+        t->bits[i / 8] |= (uint8_t)(1u << i % 8);
+    }
+}
+
+static bool on_path(const Paths *t, Vec2 p)
+{
+    if (!t->bits)
+        return false;
+    gsize i = path_square(t, p);
+    return t->bits[i / 8] >> i % 8 & 1;
+}
+
+static bool clear_of_sources(const Simulation *s, Vec2 p)
+{
+    return !zones_any_within(&s->zones, s->place, p, s->def.birth_distance_sources * s->blade->unit);
 }
 
 static bool vacant(const Simulation *s, Vec2 p)
 {
-    return !zones_any_within(&s->zones, s->place, p, s->def.birth_distance_sources * s->blade->unit) &&
-           !quadtree_any_within(&s->veins.tree, p, vein_clearance(s));
+    return !on_path(&s->paths, p) && clear_of_sources(s, p) && !quadtree_any_within(&s->veins.tree, p, vein_clearance(s));
 }
 
 /* A point uniform in the blade, by rejection from its box; FALSE in the (practically impossible) case of a long run of misses. */
@@ -120,22 +73,50 @@ static bool dart(const Simulation *s, uint64_t index, Vec2 *p)
     return false;
 }
 
+/* Darts that are thrown at the same time, at the sources there were before. */
+typedef struct {
+    const Simulation *s;
+    uint64_t first;
+    Vec2 *place;
+    bool *sticks;
+} Volley;
+
+static void throw_some(uint32_t first, uint32_t last, void *user)
+{
+    const Volley *v = user;
+    for (uint32_t i = first; i < last; i++)
+        v->sticks[i] = dart(v->s, v->first + i, &v->place[i]) && vacant(v->s, v->place[i]);
+}
+
+static void throw_volley(Simulation *s, uint64_t first, uint32_t n)
+{
+    enum { GRAIN = 64 };
+    Volley v = {s, first, g_new(Vec2, n), g_new(bool, n)};
+    pool_for(s->pool, n, GRAIN, throw_some, &v);
+    uint32_t before = s->n_sources;
+    for (uint32_t i = 0; i < n; i++) {
+        s->misses++;
+        if (!v.sticks[i] || (s->n_sources > before && !clear_of_sources(s, v.place[i]))) /* one of the same volley may be too near */
+            continue;
+        source_add(s, v.place[i]);
+        s->misses = 0;
+    }
+    g_free(v.place);
+    g_free(v.sticks);
+}
+
 static void throw_darts(Simulation *s)
 {
+    enum { VOLLEY = 1 << 14 };
     if (s->def.only_while_growing && s->blade->step > MAX(s->blade->last_step, 1))
         return;
     s->dart_carry += s->def.density * s->blade->area;
     uint64_t n = (uint64_t)s->dart_carry; /* the fraction is carried over, so that the mean is rho exactly */
     s->dart_carry -= (double)n;
     s->counts.darts += n;
-    for (uint64_t i = 0; i < n; i++) {
-        Vec2 p;
-        s->misses++;
-        if (dart(s, i, &p) && vacant(s, p)) {
-            source_add(s, p);
-            s->misses = 0;
-        }
-    }
+    paths_update(s);
+    for (uint64_t i = 0; i < n; i += VOLLEY)
+        throw_volley(s, i, (uint32_t)MIN(n - i, VOLLEY));
 }
 
 /* Where few darts are thrown a step, a blade without a source need not be full: only when some darts in a row have found no room. */
@@ -168,53 +149,29 @@ static void place_waiting(Simulation *s)
 
 bool sources_waiting(const Simulation *s) { return s->next_waiting < s->n_waiting; }
 
+/* Sources from slot `first` on, which are new. */
+typedef struct {
+    Simulation *s;
+    uint32_t first;
+} Newcomers;
+
+static void look_around(uint32_t first, uint32_t last, void *user)
+{
+    const Newcomers *n = user;
+    for (uint32_t i = first; i < last; i++)
+        source_look(n->s, n->first + i);
+}
+
 void sources_place(Simulation *s)
 {
+    enum { GRAIN = 4 };
+    Newcomers n = {s, s->n_sources};
     if (s->def.placement == PLACEMENT_DARTS)
         throw_darts(s);
     else
         place_waiting(s);
-}
-
-/* New order of the slots: living ones by cell, in a cell as they were. Returns how many there are. */
-static uint32_t *sorted_slots(const Simulation *s, uint32_t n)
-{
-    uint32_t cells = zones_cells(&s->zones);
-    uint32_t *start = g_new0(uint32_t, cells + 1), *slot = g_new(uint32_t, MAX(n, 1));
-    for (uint32_t k = 0; k < s->n_sources; k++)
-        if (source_is_alive(s, k))
-            start[zones_cell(&s->zones, s->place[k]) + 1]++;
-    for (uint32_t c = 0; c < cells; c++)
-        start[c + 1] += start[c];
-    for (uint32_t k = 0; k < s->n_sources; k++)
-        if (source_is_alive(s, k))
-            slot[start[zones_cell(&s->zones, s->place[k])]++] = k;
-    g_free(start);
-    return slot;
-}
-
-#define PERMUTE(array, slot, n)                                            \
-    do {                                                                   \
-        gpointer copy = g_memdup2(array, sizeof *(array) * s->n_sources);  \
-        for (uint32_t k_ = 0; k_ < (n); k_++)                              \
-            memcpy(&(array)[k_], (char *)copy + sizeof *(array) * (slot)[k_], sizeof *(array)); \
-        g_free(copy);                                                      \
-    } while (0)
-
-void sources_sort(Simulation *s)
-{
-    uint32_t n = sources_alive(s), *slot = sorted_slots(s, n);
-    PERMUTE(s->source, slot, n);
-    PERMUTE(s->place, slot, n);
-    PERMUTE(s->idle, slot, n);
-    PERMUTE(s->near, slot, n);
-    PERMUTE(s->near2, slot, n);
-    g_free(slot);
-    s->n_sources = n;
-    s->n_removed = s->n_unsorted = 0;
-    zones_reset(&s->zones);
-    for (uint32_t k = 0; k < n; k++)
-        zones_add(&s->zones, s->place[k], zone_of(s, k));
+    pool_for(s->pool, s->n_sources - n.first, GRAIN, look_around, &n);
+    s->counts.updates += s->n_sources - n.first;
 }
 
 /* ---- sources known beforehand ---- */
@@ -223,6 +180,54 @@ static gint by_step(gconstpointer a, gconstpointer b, gpointer unused)
 {
     const ListedSource *p = a, *q = b;
     return p->step < q->step ? -1 : p->step > q->step;
+}
+
+/* Points scattered over a box, in squares not smaller than the distance that they keep. */
+typedef struct {
+    Box2 box;
+    double cell;
+    uint32_t nx, ny, n, cap;
+    uint32_t *head; /* [nx * ny] */
+    uint32_t *next; /* [cap] */
+    ListedSource *item;
+} Scatter;
+
+static void scatter_init(Scatter *g, Box2 box, double distance)
+{
+    const double most = 1 << 20; /* squares */
+    double w = box.x1 - box.x0, h = box.y1 - box.y0;
+    *g = (Scatter){.box = box, .cell = MAX(distance, sqrt(w * h / most))};
+    g->nx = (uint32_t)(w / g->cell) + 1;
+    g->ny = (uint32_t)(h / g->cell) + 1;
+    g->head = g_new(uint32_t, (gsize)g->nx * g->ny);
+    memset(g->head, 0xff, sizeof *g->head * g->nx * g->ny); /* NO_POINT */
+}
+
+static uint32_t scatter_column(const Scatter *g, double x) { return (uint32_t)(CLAMP((x - g->box.x0) / g->cell, 0.0, g->nx - 1.0)); }
+static uint32_t scatter_row(const Scatter *g, double y) { return (uint32_t)(CLAMP((y - g->box.y0) / g->cell, 0.0, g->ny - 1.0)); }
+
+static bool scatter_any_within(const Scatter *g, Vec2 p, double r)
+{
+    uint32_t x1 = scatter_column(g, p.x + r), y1 = scatter_row(g, p.y + r);
+    for (uint32_t y = scatter_row(g, p.y - r); y <= y1; y++)
+        for (uint32_t x = scatter_column(g, p.x - r); x <= x1; x++)
+            for (uint32_t i = g->head[(gsize)y * g->nx + x]; i != NO_POINT; i = g->next[i])
+                if (vec_dist2(g->item[i].pos, p) < r * r)
+                    return true;
+    return false;
+}
+
+static void scatter_add(Scatter *g, ListedSource it)
+{
+    if (g->n == g->cap) {
+        g->cap = MAX(g->cap * 2, 256);
+        g->next = g_renew(uint32_t, g->next, g->cap);
+        g->item = g_renew(ListedSource, g->item, g->cap);
+    }
+    uint32_t *head = &g->head[(gsize)scatter_row(g, it.pos.y) * g->nx + scatter_column(g, it.pos.x)];
+    g->next[g->n] = *head;
+    g->item[g->n] = it;
+    *head = g->n++;
 }
 
 static gboolean prepare_margin(Simulation *s, GError **error)
@@ -240,27 +245,20 @@ static gboolean prepare_margin(Simulation *s, GError **error)
                     "sources.density = %g asks for %.3g darts at once; at most 1e8 are possible", s->def.density, count);
         return FALSE;
     }
-    Zones grid;
-    zones_init(&grid, box, MAX(s->def.birth_distance_sources, sqrt(1.0 / MAX(s->def.density, 1e-12))));
-    GArray *set = g_array_new(FALSE, FALSE, sizeof(ListedSource));
-    GArray *place = g_array_new(FALSE, FALSE, sizeof(Vec2));
+    Scatter set;
+    scatter_init(&set, box, s->def.birth_distance_sources);
     s->counts.darts = (uint64_t)count;
     for (uint64_t i = 0; i < s->counts.darts; i++) {
         double u[2];
         random_pair(s->def.seed, RANDOM_MARGIN, 0, i, u);
         Vec2 p = vec2(box.x0 + u[0] * (box.x1 - box.x0), box.y0 + u[1] * (box.y1 - box.y0));
-        if (!polygon_contains(s->def.leaf, vec_scale(p, scale)) ||
-            zones_any_within(&grid, (Vec2 *)place->data, p, s->def.birth_distance_sources))
-            continue;
-        ListedSource it = {p, blade_step_passed(s->blade, p)};
-        zones_add(&grid, p, (Box2){p.x, p.y, p.x, p.y});
-        g_array_append_val(place, p);
-        g_array_append_val(set, it);
+        if (polygon_contains(s->def.leaf, vec_scale(p, scale)) && !scatter_any_within(&set, p, s->def.birth_distance_sources))
+            scatter_add(&set, (ListedSource){p, blade_step_passed(s->blade, p)});
     }
-    zones_clear(&grid);
-    g_array_free(place, TRUE);
-    s->n_waiting = set->len;
-    s->waiting = (ListedSource *)g_array_free(set, FALSE);
+    g_free(set.head);
+    g_free(set.next);
+    s->waiting = set.item;
+    s->n_waiting = set.n;
     return TRUE;
 }
 
@@ -292,6 +290,8 @@ static gboolean prepare_list(Simulation *s, GError **error)
 
 gboolean sources_prepare(Simulation *s, GError **error)
 {
+    if (s->def.placement == PLACEMENT_DARTS)
+        paths_prepare(s);
     gboolean ok = s->def.placement == PLACEMENT_MARGIN ? prepare_margin(s, error)
                   : s->def.placement == PLACEMENT_LIST ? prepare_list(s, error)
                                                        : TRUE;

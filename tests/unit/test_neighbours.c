@@ -157,14 +157,9 @@ static int by_index(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static uint32_t members(const Hood *h, const Vec2 *pos, uint32_t out[HOOD_MAX])
+static uint32_t members(const Hood *h, uint32_t out[HOOD_MAX])
 {
-    for (uint32_t i = 0; i < h->n; i++) {
-        out[i] = h->m[i].v;
-        g_assert_cmpfloat(h->m[i].p.x, ==, pos[out[i]].x);
-        g_assert_cmpfloat(h->m[i].p.y, ==, pos[out[i]].y);
-        g_assert_cmpfloat(h->m[i].d2, ==, plain_dist2(pos[out[i]], h->s));
-    }
+    memcpy(out, h->m, sizeof *out * h->n);
     qsort(out, h->n, sizeof *out, by_index);
     return h->n;
 }
@@ -183,18 +178,17 @@ static Field field_of(const Case *c)
     return (Field){c->pos, &c->tree, field_box, c->sight.rule ? seen : NULL, &c->sight};
 }
 
-static void fail_at(const Case *c, const Hood *h, const char *what)
+static void fail_at(const Case *c, Vec2 s, const char *what)
 {
-    g_error("%s: %s, sight %d, %u nodes, source at %.17g,%.17g", what, set_name[c->kind], c->sight.rule, c->n, h->s.x,
-            h->s.y);
+    g_error("%s: %s, sight %d, %u nodes, source at %.17g,%.17g", what, set_name[c->kind], c->sight.rule, c->n, s.x, s.y);
 }
 
-static void check_relative(const Case *c, const Hood *h, const char *what)
+static void check_relative(const Case *c, const Hood *h, Vec2 s, const char *what)
 {
     uint32_t got[HOOD_MAX], *want = g_new(uint32_t, c->n + 1);
-    uint32_t n = members(h, c->pos, got), m = plain_relative(c->pos, c->n, h->s, seen, &c->sight, want);
+    uint32_t n = members(h, got), m = plain_relative(c->pos, c->n, s, seen, &c->sight, want);
     if (n != m || memcmp(got, want, sizeof *got * n) != 0)
-        fail_at(c, h, what);
+        fail_at(c, s, what);
     g_free(want);
 }
 
@@ -208,7 +202,7 @@ static void check_nearest(const Case *c, Vec2 s, Nearest got, const char *what)
 {
     uint32_t want = plain_nearest(c->pos, c->n, s, seen, &c->sight);
     if (got.v != want || (want != NO_POINT && got.d2 != plain_dist2(c->pos[want], s)))
-        fail_at(c, &(Hood){.s = s}, what);
+        fail_at(c, s, what);
 }
 
 static Nearest find_nearest(const Field *f, Vec2 s)
@@ -218,17 +212,17 @@ static Nearest find_nearest(const Field *f, Vec2 s)
     return n;
 }
 
-static void check_urquhart(const Case *c, const Hood *h, const char *what, uint32_t *sure)
+static void check_urquhart(const Case *c, const Hood *h, Vec2 s, const char *what, uint32_t *sure)
 {
-    uint32_t got[HOOD_MAX], n = members(h, c->pos, got);
+    uint32_t got[HOOD_MAX], n = members(h, got);
     Answer *want = g_new(Answer, c->n);
-    plain_urquhart(c->pos, c->n, h->s, seen, &c->sight, want);
+    plain_urquhart(c->pos, c->n, s, seen, &c->sight, want);
     for (uint32_t v = 0; v < c->n; v++) {
         bool in = bsearch(&v, got, n, sizeof *got, by_index) != NULL;
         *sure += want[v] == YES;
         if ((want[v] == YES && !in) || (want[v] == NO && in)) {
             g_printerr("# node %u at %.17g,%.17g: %s\n", v, c->pos[v].x, c->pos[v].y, in ? "one too many" : "missing");
-            fail_at(c, h, what);
+            fail_at(c, s, what);
         }
     }
     g_free(want);
@@ -247,11 +241,12 @@ static void check_set(SetKind kind, uint32_t n, uint32_t first, uint32_t batch, 
     for (uint32_t i = 0; i < first; i++)
         quadtree_add(&c.tree, c.pos[i], i);
     Nearest near[SOURCES];
+    Vec2 place[SOURCES];
     Hood hood[SOURCES], urquhart[SOURCES];
     Cell cell[SOURCES] = {0}, scratch = {0};
     Field f = field_of(&c);
     for (uint32_t k = 0; k < SOURCES; k++) {
-        Vec2 s = set_source(kind, k, c.pos, n, &d);
+        Vec2 s = place[k] = set_source(kind, k, c.pos, n, &d);
         near[k] = find_nearest(&f, s);
         hood_find(&hood[k], &f, s);
         urquhart_find(&urquhart[k], &cell[k], &f, s);
@@ -270,26 +265,27 @@ static void check_set(SetKind kind, uint32_t n, uint32_t first, uint32_t batch, 
         bool look = step % 3 == 0 || to == n; /* the twins are slow */
         for (uint32_t k = 0; k < SOURCES; k++) {
             if (to > from) {
-                uint32_t before[HOOD_MAX], after[HOOD_MAX], n0 = members(&hood[k], c.pos, before);
-                bool changed = hood_update(&hood[k], &f, &c.fresh);
-                uint32_t n1 = members(&hood[k], c.pos, after);
+                uint32_t before[HOOD_MAX], after[HOOD_MAX], n0 = members(&hood[k], before);
+                bool changed = hood_update(&hood[k], &f, place[k], &c.fresh);
+                uint32_t n1 = members(&hood[k], after);
                 bool differs = n0 != n1 || memcmp(before, after, sizeof *before * n0) != 0;
                 if (differs && !changed)
-                    fail_at(&c, &hood[k], "an unreported change");
-                boxtree_nearest(&c.fresh, c.pos, hood[k].s, f.sees, f.user, &near[k].v, &near[k].d2);
-                urquhart_update(&urquhart[k], &cell[k], &f, &c.fresh);
+                    fail_at(&c, place[k], "an unreported change");
+                boxtree_nearest(&c.fresh, c.pos, place[k], f.sees, f.user, &near[k].v, &near[k].d2);
+                urquhart_update(&urquhart[k], &cell[k], &f, place[k], &c.fresh);
             }
             if (!look)
                 continue;
             Hood h;
-            check_nearest(&c, hood[k].s, near[k], "boxtree_nearest");
-            check_nearest(&c, hood[k].s, find_nearest(&f, hood[k].s), "quadtree_nearest");
-            check_relative(&c, &hood[k], "hood_update");
-            hood_find(&h, &f, hood[k].s);
-            check_relative(&c, &h, "hood_find");
-            check_urquhart(&c, &urquhart[k], "urquhart_update", sure);
-            urquhart_find(&h, &scratch, &f, hood[k].s);
-            check_urquhart(&c, &h, "urquhart_find", sure);
+            Vec2 s = place[k];
+            check_nearest(&c, s, near[k], "boxtree_nearest");
+            check_nearest(&c, s, find_nearest(&f, s), "quadtree_nearest");
+            check_relative(&c, &hood[k], s, "hood_update");
+            hood_find(&h, &f, s);
+            check_relative(&c, &h, s, "hood_find");
+            check_urquhart(&c, &urquhart[k], s, "urquhart_update", sure);
+            urquhart_find(&h, &scratch, &f, s);
+            check_urquhart(&c, &h, s, "urquhart_find", sure);
         }
     }
     for (uint32_t k = 0; k < SOURCES; k++)
@@ -350,10 +346,10 @@ static void test_by_hand(void)
         hood_find(&h, &f, vec2(0, 0));
         uint32_t relative = 0, urquhart = 0;
         for (uint32_t i = 0; i < h.n; i++)
-            relative |= 1u << h.m[i].v;
+            relative |= 1u << h.m[i];
         urquhart_find(&h, &c, &f, vec2(0, 0));
         for (uint32_t i = 0; i < h.n; i++)
-            urquhart |= 1u << h.m[i].v;
+            urquhart |= 1u << h.m[i];
         g_assert_cmpuint(relative, ==, hand[k].want);
         g_assert_cmpuint(urquhart, ==, hand[k].want);
         cell_clear(&c);
@@ -384,7 +380,7 @@ static void test_at_most_five(void)
         g_assert_cmpuint(hood.n, >=, 1);
         g_assert_cmpuint(hood.n, <=, 6); /* rounding may part all six by a hair more than 60° */
         Case c = {.kind = SET_HEXAGONS, .pos = pos, .n = 6, .sight = {0, pos}};
-        check_relative(&c, &hood, "hexagon");
+        check_relative(&c, &hood, s, "hexagon");
         quadtree_clear(&t);
     }
 }
@@ -412,6 +408,7 @@ static void test_zone_holds(void)
         Cell cell = {0};
         hood_find(&hood, &f, s);
         urquhart_find(&urquhart, &cell, &f, s);
+        Box2 zone = hood_zone(&hood, &f, s), urquhart_box = urquhart_zone(&cell, &f, s);
         for (uint32_t k = 0; k < 60; k++) {
             double spread = k % 2 ? 70 : 25;
             Vec2 centre = k % 3 ? vec2(0, 0) : s;
@@ -420,11 +417,11 @@ static void test_zone_holds(void)
                 continue;
             c.pos[n] = p;
             uint32_t sure = 0;
-            if (!box_has(hood.zone, p))
-                check_relative(&c, &hood, "zone of the relative hood");
-            if (!box_has(urquhart.zone, p))
-                check_urquhart(&c, &urquhart, "zone of Urquhart's hood", &sure);
-            outside += !box_has(hood.zone, p);
+            if (!box_has(zone, p))
+                check_relative(&c, &hood, s, "zone of the relative hood");
+            if (!box_has(urquhart_box, p))
+                check_urquhart(&c, &urquhart, s, "zone of Urquhart's hood", &sure);
+            outside += !box_has(zone, p);
         }
         cell_clear(&cell);
         quadtree_clear(&c.tree);
@@ -456,15 +453,16 @@ static void test_zone_skips(void)
                 hood_find(&hood, &f, s);
                 urquhart_find(&urquhart, &cell, &f, s);
             } else {
-                skipped += !box_has(hood.zone, pos[v]);
-                if (box_has(hood.zone, pos[v]))
-                    hood_update(&hood, &f, &c.fresh);
-                if (box_has(urquhart.zone, pos[v]))
-                    urquhart_update(&urquhart, &cell, &f, &c.fresh);
+                bool concerns = box_has(hood_zone(&hood, &f, s), pos[v]);
+                skipped += !concerns;
+                if (concerns)
+                    hood_update(&hood, &f, s, &c.fresh);
+                if (box_has(urquhart_zone(&cell, &f, s), pos[v]))
+                    urquhart_update(&urquhart, &cell, &f, s, &c.fresh);
             }
             uint32_t sure = 0;
-            check_relative(&c, &hood, "a zone that shut a node out");
-            check_urquhart(&c, &urquhart, "an Urquhart zone that shut a node out", &sure);
+            check_relative(&c, &hood, s, "a zone that shut a node out");
+            check_urquhart(&c, &urquhart, s, "an Urquhart zone that shut a node out", &sure);
         }
         cell_clear(&cell);
         quadtree_clear(&c.tree);
@@ -537,6 +535,28 @@ static void check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2
         }
 }
 
+/* Every point that is nearer to a corner of `a` than to one of `b` must be among those found, and none that is far behind `b`. */
+static void check_nearer(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 a, Box2 b)
+{
+    uint32_t *out = g_new(uint32_t, n), found = boxtree_nearer(t, pos, a, b, out, n);
+    g_assert_cmpuint(found, <=, n);
+    qsort(out, found, sizeof *out, by_index);
+    for (uint32_t k = 0; k < n; k++) {
+        uint32_t v = 2 * k + 1; /* points are the odd ones */
+        double near2 = HUGE_VAL, far2 = 0.0, least2 = box_dist2(a, pos[v]);
+        for (int c = 0; c < 4; c++) {
+            near2 = MIN(near2, plain_dist2(pos[v], vec2(c & 1 ? a.x1 : a.x0, c & 2 ? a.y1 : a.y0)));
+            far2 = MAX(far2, plain_dist2(pos[v], vec2(c & 1 ? b.x1 : b.x0, c & 2 ? b.y1 : b.y0)));
+        }
+        bool in = bsearch(&v, out, found, sizeof *out, by_index) != NULL;
+        g_assert_true(in || near2 >= far2);
+        g_assert_true(!in || least2 < far2 * (1.0 + 1e-6));
+    }
+    if (found)
+        g_assert_cmpuint(boxtree_nearer(t, pos, a, b, out, found - 1), ==, found);
+    g_free(out);
+}
+
 static void test_boxtree(void)
 {
     Boxtree t = {0};
@@ -579,8 +599,11 @@ static void test_boxtree(void)
                 any |= p.x >= b.x0 && p.x <= b.x1 && p.y >= b.y0 && p.y <= b.y1;
             }
             g_assert_cmpint(boxtree_any_in(&t, pos, b), ==, any);
-            if (n)
+            if (n) {
+                Vec2 q = pos[item[pick(&d, n)]];
                 check_nearest_to(&t, pos, n, b, k % 3 ? roll(&d) * 300 : HUGE_VAL);
+                check_nearer(&t, pos, n, b, (Box2){q.x, q.y, q.x + roll(&d) * 2, q.y + roll(&d) * 2});
+            }
         }
         g_free(pos);
         g_free(item);
@@ -589,6 +612,38 @@ static void test_boxtree(void)
 }
 
 /* ---- index of zones ---- */
+
+/* Squares with a zone that holds a point are visited, once each; others, as far as the boxes are tight, only when a point lies in the box
+ * around their zones. */
+static void check_visit(const Zones *z, uint32_t level, const Boxtree *tree, const Vec2 *place, const Box2 *zone, uint32_t n,
+                        const Vec2 *point, uint32_t m, double loose)
+{
+    uint32_t count = z->nx[level] * z->ny[level], *out = g_new(uint32_t, count);
+    bool *visited = g_new0(bool, count);
+    Box2 *around = g_new(Box2, count);
+    for (uint32_t q = 0; q < count; q++)
+        around[q] = box_empty();
+    for (uint32_t k = zones_visit(z, level, tree, point, out); k-- > 0;) {
+        g_assert_cmpuint(out[k], <, count);
+        g_assert_false(visited[out[k]]);
+        visited[out[k]] = true;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t cell = zones_cell(z, place[i]), q = (cell / z->nx[0] >> level) * z->nx[level] + (cell % z->nx[0] >> level);
+        around[q] = box_union(around[q], zone[i]);
+        for (uint32_t k = 0; k < m; k++)
+            g_assert_true(visited[q] || !box_has(zone[i], point[k]));
+    }
+    for (uint32_t q = 0; q < count; q++) {
+        bool about = false;
+        for (uint32_t k = 0; k < m; k++)
+            about |= box_has(box_grow(around[q], loose), point[k]);
+        g_assert_true(about || !visited[q] || loose == HUGE_VAL);
+    }
+    g_free(out);
+    g_free(visited);
+    g_free(around);
+}
 
 static void test_zones(void)
 {
@@ -605,8 +660,6 @@ static void test_zones(void)
             Vec2 *place = g_new(Vec2, n + 1), *point = g_new(Vec2, m);
             Box2 *zone = g_new(Box2, n + 1);
             uint32_t *item = g_new(uint32_t, m);
-            uint32_t *hits = g_new0(uint32_t, n + 1), *out = g_new(uint32_t, MAX(n, zones_cells(&z)) + 1);
-            bool *open = g_new0(bool, zones_cells(&z));
             for (uint32_t i = 0; i < n; i++) {
                 place[i] = vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
                 double x = roll(&d) * w * (i % 9 ? 0.05 : 1), y = roll(&d) * h * (i % 9 ? 0.05 : 1);
@@ -621,35 +674,22 @@ static void test_zones(void)
             }
             Boxtree b = {0};
             boxtree_build(&b, point, item, m);
-            for (uint32_t i = 0; i < n; i += 7) { /* some shrink, and are raised or not */
-                zone[i] = (Box2){place[i].x, zone[i].y0, zone[i].x1, place[i].y};
+            for (uint32_t i = 0; i < n; i += 7) { /* some shrink, and are raised or not; some grow */
+                bool grows = i % 2;
+                zone[i] = grows ? box_grow(zone[i], w * 0.1) : (Box2){place[i].x, zone[i].y0, zone[i].x1, place[i].y};
                 zones_set(&z, i, zone[i]);
+                if (grows && round % 2 == 0)
+                    zones_lift(&z, i, place[i]);
             }
             if (round % 2)
                 zones_raise(&z);
-            for (uint32_t k = zones_visit(&z, &b, point, out); k-- > 0;)
-                hits[out[k]]++;
-            uint32_t cells = zones_visit_cells(&z, &b, point, out);
-            for (uint32_t k = 0; k < cells; k++) {
-                g_assert_false(open[out[k]]);
-                open[out[k]] = true;
-            }
             double loose = 1e-6 * (fabs(box.x0) + fabs(box.x1) + fabs(box.y0) + fabs(box.y1));
+            for (uint32_t l = 0; l < z.levels; l++)
+                check_visit(&z, l, &b, place, zone, n, point, m, round % 2 ? loose : HUGE_VAL);
             for (uint32_t i = 0; i < n; i++) {
-                bool in = false, about = false;
-                for (uint32_t k = 0; k < m; k++) {
-                    in |= box_has(zone[i], point[k]);
-                    about |= box_has(box_grow(zone[i], loose), point[k]);
-                }
-                g_assert_cmpuint(hits[i], <=, 1);
-                uint32_t cell = zones_cell(&z, place[i]);
-                g_assert_true(box_has(zones_cell_box(&z, cell), place[i]));
-                if (in) {
-                    g_assert_cmpuint(hits[i], ==, 1);
-                    g_assert_true(open[cell]);
-                }
-                if (!about)
-                    g_assert_cmpuint(hits[i], ==, 0);
+                Box2 got = zones_get(&z, i), want = box_grow(zone[i], loose);
+                g_assert_true(got.x0 <= zone[i].x0 && got.x0 >= want.x0 && got.y1 >= zone[i].y1 && got.y1 <= want.y1);
+                g_assert_true(got.y0 <= zone[i].y0 && got.y0 >= want.y0 && got.x1 >= zone[i].x1 && got.x1 <= want.x1);
             }
             for (uint32_t k = 0; k < 200; k++) {
                 Vec2 p = vec2(box.x0 + (roll(&d) * 1.2 - 0.1) * w, box.y0 + (roll(&d) * 1.2 - 0.1) * h);
@@ -664,9 +704,6 @@ static void test_zones(void)
             g_free(point);
             g_free(zone);
             g_free(item);
-            g_free(hits);
-            g_free(out);
-            g_free(open);
             zones_reset(&z);
         }
         zones_clear(&z);

@@ -52,7 +52,7 @@ static SimulationDef small(const Polygon *leaf, GrowthKind kind, Pattern pattern
     d.birth_distance_veins = 3;
     d.pattern = pattern;
     d.neighbourhood = neighbourhood;
-    d.threads = 1;
+    d.threads = 2; /* what the twins do without any */
     return d;
 }
 
@@ -60,7 +60,7 @@ static SimulationDef small(const Polygon *leaf, GrowthKind kind, Pattern pattern
 
 typedef struct {
     const Simulation *sim;
-    const Source *src;
+    uint32_t slot;
 } View;
 
 /* The sinus rule, written down again. */
@@ -71,10 +71,10 @@ static bool in_view(const void *user, uint32_t v)
     if (!s->reach)
         return true;
     if (s->blade->moving)
-        return reach_sees(s->reach, vec_scale(w->src->material, 1.0 / s->def.growth.initial_length),
+        return reach_sees(s->reach, vec_scale(s->material[w->slot], 1.0 / s->def.growth.initial_length),
                           vec_scale(s->veins.material[v], 1.0 / s->def.growth.initial_length));
-    double k = 1.0 / blade_scale_at(s->blade, MAX(w->src->birth, s->veins.birth[v]));
-    return reach_sees(s->reach, vec_scale(w->src->hood.s, k), vec_scale(s->veins.pos[v], k));
+    double k = 1.0 / blade_scale_at(s->blade, MAX(s->birth[w->slot], s->veins.birth[v]));
+    return reach_sees(s->reach, vec_scale(s->place[w->slot], k), vec_scale(s->veins.pos[v], k));
 }
 
 static int by_index(const void *a, const void *b)
@@ -85,8 +85,7 @@ static int by_index(const void *a, const void *b)
 
 static uint32_t sorted_members(const Hood *h, uint32_t out[HOOD_MAX])
 {
-    for (uint32_t i = 0; i < h->n; i++)
-        out[i] = h->m[i].v;
+    memcpy(out, h->m, sizeof *out * h->n);
     qsort(out, h->n, sizeof *out, by_index);
     return h->n;
 }
@@ -96,43 +95,37 @@ static uint32_t source_nodes(const Simulation *s, uint32_t k, uint32_t out[HOOD_
 {
     uint32_t n = source_members(s, k);
     for (uint32_t i = 0; i < n; i++)
-        out[i] = source_member(s, k, i).v;
+        out[i] = source_member(s, k, i);
     qsort(out, n, sizeof *out, by_index);
     return n;
 }
 
-static void wrong_hood(const Simulation *s, const Source *src)
+static void wrong_hood(const Simulation *s, Vec2 p)
 {
-    g_error("step %u: a source at %.17g,%.17g has a wrong neighbourhood", s->blade->step, src->hood.s.x, src->hood.s.y);
+    g_error("step %u: a source at %.17g,%.17g has a wrong neighbourhood", s->blade->step, p.x, p.y);
 }
 
 static void check_hood(const Simulation *s, uint32_t k)
 {
-    const Source *src = &s->source[k];
-    View view = {s, src};
-    const Vec2 *pos = s->veins.pos;
+    View view = {s, k};
+    const Vec2 *pos = s->veins.pos, p = s->place[k];
     uint32_t got[HOOD_MAX], n = source_nodes(s, k, got), count = s->veins.n;
-    for (uint32_t i = 0; i < n; i++) {
-        Neighbour m = source_member(s, k, i);
-        g_assert_cmpmem(&m.p, sizeof m.p, &pos[m.v], sizeof m.p);
-        g_assert_cmpfloat(m.d2, ==, plain_dist2(pos[m.v], src->hood.s));
-    }
     if (s->def.pattern == PATTERN_OPEN) {
-        uint32_t want = plain_nearest(pos, count, src->hood.s, in_view, &view);
-        if (n != (want != NO_POINT) || (n && got[0] != want))
-            wrong_hood(s, src);
+        uint32_t want = plain_nearest(pos, count, p, in_view, &view);
+        if (n != (want != NO_POINT) || (n && (got[0] != want || s->near2[k] != plain_dist2(pos[want], p))))
+            wrong_hood(s, p);
     } else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE) {
-        uint32_t *want = g_new(uint32_t, count), m = plain_relative(pos, count, src->hood.s, in_view, &view, want);
+        uint32_t *want = g_new(uint32_t, count), m = plain_relative(pos, count, p, in_view, &view, want);
         if (n != m || memcmp(got, want, sizeof *got * n) != 0)
-            wrong_hood(s, src);
+            wrong_hood(s, p);
         g_free(want);
     } else {
         Answer *want = g_new(Answer, count);
-        plain_urquhart(pos, count, src->hood.s, in_view, &view, want);
+        plain_urquhart(pos, count, p, in_view, &view, want);
         for (uint32_t v = 0; v < count; v++) {
             bool in = bsearch(&v, got, n, sizeof *got, by_index) != NULL;
             if ((want[v] == YES && !in) || (want[v] == NO && in))
-                wrong_hood(s, src);
+                wrong_hood(s, p);
         }
         g_free(want);
     }
@@ -165,7 +158,7 @@ static void check_placement(const Simulation *s, const Memory *m)
     double unit = s->blade->unit, bs = s->def.birth_distance_sources * unit * (1 - 1e-9);
     double bv = MAX(s->def.birth_distance_veins, s->def.kill_distance) * unit * (1 - 1e-9);
     for (uint32_t k = 0; k < s->n_sources; k++) {
-        if (!source_is_alive(s, k) || s->source[k].birth != s->blade->step)
+        if (!source_is_alive(s, k) || s->birth[k] != s->blade->step)
             continue;
         Vec2 p = s->place[k];
         g_assert_true(blade_contains(s->blade, p));
@@ -187,7 +180,6 @@ static void check_sources(const Simulation *s)
         if (!source_is_alive(s, k))
             continue;
         alive++;
-        g_assert_cmpmem(&s->place[k], sizeof(Vec2), &s->source[k].hood.s, sizeof(Vec2));
         check_hood(s, k);
         for (uint32_t v = 0; v < s->veins.n && s->def.pattern == PATTERN_OPEN && !s->reach; v++)
             g_assert_cmpfloat(vec_dist2(s->place[k], s->veins.pos[v]), >=, kill * kill);
@@ -202,7 +194,7 @@ static void remember(const Simulation *s, Memory *m)
     for (uint32_t k = 0; k < s->n_sources; k++)
         if (source_is_alive(s, k))
             m->source[m->n_sources++] =
-                s->blade->moving ? s->source[k].material : blade_material(s->blade, s->place[k]);
+                s->blade->moving ? s->material[k] : blade_material(s->blade, s->place[k]);
     m->nodes = s->veins.n;
 }
 
@@ -528,12 +520,12 @@ static uint32_t stale_hoods(const Simulation *s, uint32_t *looked)
             continue;
         Hood h = {.n = 0};
         Eye eye;
-        Field f = source_field(s, &s->source[k], &eye);
+        Field f = source_field(s, k, &eye);
         uint32_t got[HOOD_MAX], want[HOOD_MAX];
         if (s->def.pattern == PATTERN_OPEN) {
             double d2;
-            h.m[0].v = quadtree_nearest(f.tree, s->place[k], HUGE_VAL, f.sees, f.user, &d2);
-            h.n = h.m[0].v != NO_POINT;
+            h.m[0] = quadtree_nearest(f.tree, s->place[k], HUGE_VAL, f.sees, f.user, &d2);
+            h.n = h.m[0] != NO_POINT;
         } else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE) {
             hood_find(&h, &f, s->place[k]);
         } else {
@@ -646,6 +638,14 @@ static void test_opposite(void)
                        four[] = {{{-6, 18}, 0}, {{6, 18}, 0}, {{0, 12}, 0}, {{0, 24}, 0}};
     in_every_mode(two, 2, 1, &middle, 1, 0);
     in_every_mode(four, 4, 1, &middle, 1, 0);
+}
+
+/* Two children of one step that would lie on top of each other: the second is not born. */
+static void test_meeting(void)
+{
+    static const Vec2 apart[] = {{-1.02 / 45, 0.3}, {1.02 / 45, 0.3}};
+    const ListedSource between = {{0, 13.5}, 0};
+    in_every_mode(&between, 1, 0.1, apart, 2, 1);
 }
 
 static void test_coincident(void)
@@ -772,6 +772,82 @@ static void test_static(void)
     }
 }
 
+/* ---- looking at new nodes, by hand ---- */
+
+/* Enters nodes as if they had just been born, and lets the sources look. */
+static void bear(Simulation *s, const Vec2 *at, uint32_t n)
+{
+    s->fresh = g_renew(uint32_t, s->fresh, n);
+    s->cap_fresh = n;
+    s->n_fresh = n;
+    for (uint32_t i = 0; i < n; i++)
+        s->fresh[i] = veins_add(&s->veins, at[i], 0, s->blade->step);
+    sources_update(s);
+    uint32_t looked = 0;
+    g_assert_cmpuint(stale_hoods(s, &looked), ==, 0);
+}
+
+/* A look in vain gives a source a zone, and boxes shrink to it. A new neighbour makes it larger: the next node takes that neighbour's place
+ * from where the old zone did not reach. */
+static void test_zone_grows(void)
+{
+    static const Vec2 seed = {0, 0.2}, vain[] = {{0, 4}}, neighbour[] = {{12, 18}}, rival[] = {{5, 8.9}};
+    const ListedSource one = {{0, 18}, 0};
+    Polygon *leaf = ovate();
+    for (int mode = 1; mode < 3; mode++) {
+        SimulationDef d = listed(leaf, PATTERN_CLOSED, mode == 2 ? NEIGHBOURHOOD_URQUHART : NEIGHBOURHOOD_RELATIVE, &one, 1);
+        d.kill_distance = 0.1;
+        d.seeds = &seed;
+        d.n_seeds = 1;
+        Simulation *s = start(&d);
+        sources_place(s);
+        g_assert_cmpuint(s->n_sources, ==, 1);
+        bear(s, vain, 1);
+        if (mode == 1)
+            g_assert_true(s->mark[0] & MARK_ZONED);
+        zones_raise(&s->zones);
+        blade_advance(s->blade); /* to a step in which nothing else raises the boxes */
+        bear(s, neighbour, 1);
+        g_assert_cmpuint(s->source[0].hood.n, ==, 2);
+        bear(s, rival, 1);
+        g_assert_cmpuint(s->source[0].hood.n, ==, 1);
+        simulation_free(s);
+    }
+    polygon_free(leaf);
+}
+
+/* Sources with one neighbour each that look together: at a node that takes its place, at one beside it, at two at once, at nothing new. */
+static void test_crowd(void)
+{
+    static const Vec2 seed = {0, 0.2};
+    static const Vec2 batch[][2] = {
+        {{0, 9.4}, {0.3, 9.1}}, {{-12, 19}, {-12, 18}}, {{0, 9.1}, {0, 2}}, {{3, 23}, {3.2, 23.1}}, {{1, 12}, {-1, 12}}};
+    const ListedSource many[] = {{{0, 18}, 0}, {{0.5, 18}, 0}, {{0, 18.5}, 0},   {{1, 18}, 0},
+                                 {{1, 19}, 0}, {{-1, 18}, 0},  {{-0.5, 18.7}, 0}};
+    Polygon *leaf = ovate();
+    uint32_t most = 0;
+    for (uint32_t order = 0; order < 120; order++) { /* the batches in all orders */
+        SimulationDef d = listed(leaf, PATTERN_CLOSED, NEIGHBOURHOOD_RELATIVE, many, G_N_ELEMENTS(many));
+        uint32_t left[] = {0, 1, 2, 3, 4}, turn = order;
+        d.kill_distance = 0.1;
+        d.seeds = &seed;
+        d.n_seeds = 1;
+        Simulation *s = start(&d);
+        sources_place(s);
+        for (uint32_t n = 5; n > 0; n--) {
+            uint32_t k = turn % n;
+            turn /= n;
+            bear(s, batch[left[k]], 2);
+            left[k] = left[n - 1];
+            for (uint32_t i = 0; i < s->n_sources; i++)
+                most = MAX(most, s->source[i].hood.n);
+        }
+        simulation_free(s);
+    }
+    g_assert_cmpuint(most, >=, 3);
+    polygon_free(leaf);
+}
+
 /* ---- threads, limits, errors ---- */
 
 static uint64_t hash_with(SimulationDef d, unsigned threads)
@@ -874,12 +950,15 @@ int main(int argc, char **argv)
     g_test_add_func("/simulation/large", test_large);
     g_test_add_func("/simulation/many-sources", test_many_sources);
     g_test_add_func("/simulation/hard/opposite", test_opposite);
+    g_test_add_func("/simulation/hard/meeting", test_meeting);
     g_test_add_func("/simulation/hard/coincident", test_coincident);
     g_test_add_func("/simulation/hard/on-seed", test_on_seed);
     g_test_add_func("/simulation/hard/tiny-kill", test_tiny_kill);
     g_test_add_func("/simulation/hard/no-kill", test_no_kill);
     g_test_add_func("/simulation/hard/overshoot", test_overshoot);
     g_test_add_func("/simulation/hard/few-darts", test_few_darts);
+    g_test_add_func("/simulation/zone-grows", test_zone_grows);
+    g_test_add_func("/simulation/crowd", test_crowd);
     g_test_add_func("/simulation/static", test_static);
     g_test_add_func("/simulation/threads", test_threads);
     g_test_add_func("/simulation/max-steps", test_max_steps);
