@@ -11,6 +11,7 @@ typedef enum {
     RANDOM_MARGIN = 2,    /* precomputed source set for marginal growth */
     RANDOM_TEXTURE = 3,   /* colour variation of the blade */
     RANDOM_POSE = 64,     /* unevenness of poses */
+    RANDOM_LSYSTEM = 80,  /* choice among productions */
     RANDOM_MESH = 100,    /* order in which a mesh's points are inserted */
 } RandomStream;
 

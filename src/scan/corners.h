@@ -1,0 +1,47 @@
+/* Characteristic points of a leaf's contour: Harris corners on it, with tip and base (Fang & Shen 2013, section 3.2; Harris & Stephens
+ * 1988). */
+#ifndef SCAN_CORNERS_H
+#define SCAN_CORNERS_H
+
+#include "geom/vec.h"
+#include "scan/edges.h"
+
+typedef struct {
+    double smoothing; /* sigma of the Gaussian before the derivatives, pixels, 0 … 100 */
+    double window;    /* sigma of the Gaussian window in which gradients are compared, pixels, 0.5 … 100 */
+    double k;         /* weight of trace² in the response, 0 … 0.25. No corners are bends of a radius above window / √k, about, and
+                       * those that turn by less than 2 √k radians */
+    double threshold; /* least response of a corner, as part of the greatest on the contour, 0 … 1 */
+    double spacing;   /* least way along the contour from one characteristic point to the next, pixels */
+} CornersDef;
+
+/* 1, 2, 0.04, 0.02, 8: bends of a radius above 10 pixels or of less than 23° are smooth. */
+CornersDef corners_def_default(void);
+
+typedef enum {
+    CORNERS_ERROR_SETTINGS, /* a parameter out of its range */
+    CORNERS_ERROR_CONTOUR,  /* too short, no numbers, base or tip not on it */
+} CornersError;
+#define CORNERS_ERROR corners_error_quark()
+GQuark corners_error_quark(void);
+
+/* det M - k trace² M at every pixel, M the windowed sum of products of Sobel derivatives of the image, whose grey range counts as 1:
+ * positive at corners, negative on straight edges, 0 on plain ground; pixels⁻⁴. EDGES_ERROR for an unusable image. O(pixels · (smoothing +
+ * window)). */
+GreyImage *corners_response(const GreyImage *in, const CornersDef *def, GError **error);
+
+typedef struct {
+    uint32_t at;     /* vertex of the contour */
+    double response; /* Harris; any value at base and tip */
+} Corner;
+
+/* The characteristic points among the vertices v[n] of a closed contour, which is given densely (a vertex a pixel or more) in the image
+ * plane (edges.h: the middle of the upper left pixel is 0.5,0.5), smoothly or as the boundary of pixels. Base and tip, two of its
+ * vertices, are always among them. The others are local maxima along the contour of the response (read between pixels, at the mean place
+ * of the vertices within `window` along the contour), positive and no less than the threshold. As the maximum sits a little beside a
+ * corner, each is moved to the vertex within 3 (smoothing + window), but no more than `spacing`, along the contour that is farthest from
+ * the chord of that stretch: the corner itself where two straight sides meet. Stronger ones (of equals the first) keep weaker ones nearer
+ * than `spacing` away. Returns Corner in the order of the contour. */
+GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *def, GError **error);
+
+#endif
