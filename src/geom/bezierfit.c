@@ -5,7 +5,7 @@
 #include "geom/bezier.h"
 #include "geom/cubicfit.h"
 
-G_DEFINE_QUARK(venation - bezierfit - error - quark, bezierfit_error)
+G_DEFINE_QUARK(venation-bezierfit-error-quark, bezierfit_error)
 
 enum { MAX_VERTICES = 10000000 };
 

@@ -5,6 +5,12 @@
 #include "lib/settings.h"
 #include "lib/writer.h"
 
+/* Maps whose values are read as numbers: 255 levels would be too coarse for them. */
+static gboolean measures(MapId id)
+{
+    return id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
+}
+
 static gboolean write_maps(const Writer *w, const Frame *frame, const gboolean *wanted, gboolean veins_image, GError **error)
 {
     Painter *painter = writer_painter(w, frame);
@@ -13,7 +19,7 @@ static gboolean write_maps(const Writer *w, const Frame *frame, const gboolean *
         if (!wanted[i])
             continue;
         Plane *plane = painter_paint(painter, (MapId)i);
-        ok = writer_map(w, plane, paint_map_info((MapId)i)->name, i == MAP_HEIGHT ? 16 : w->depth, error);
+        ok = writer_map(w, plane, paint_map_info((MapId)i)->name, measures((MapId)i) ? 16 : w->depth, error);
         plane_free(plane);
     }
     if (ok && veins_image) {

@@ -16,7 +16,7 @@ struct Params {
     Entry entry[PARAM_COUNT];
 };
 
-G_DEFINE_QUARK(param - error - quark, param_error)
+G_DEFINE_QUARK(param-error-quark, param_error)
 
 #define P(id, section, key, type, unit, initial, low, high, choices, doc)                                              \
     {section, key, TYPE_##type, unit, initial, low, high, choices, doc},

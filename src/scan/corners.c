@@ -1,6 +1,6 @@
 #include "scan/corners.h"
 
-G_DEFINE_QUARK(venation - corners - error - quark, corners_error)
+G_DEFINE_QUARK(venation-corners-error-quark, corners_error)
 
 CornersDef corners_def_default(void)
 {

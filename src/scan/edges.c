@@ -5,7 +5,7 @@
 
 #include "scan/convolve.h"
 
-G_DEFINE_QUARK(venation - edges - error - quark, edges_error)
+G_DEFINE_QUARK(venation-edges-error-quark, edges_error)
 
 static const double largest_sigma = 100.0, smallest_laplacian = 0.5;
 /* Where kernels are cut off, in sigmas: what is left out is below 1e-4 of the whole. */

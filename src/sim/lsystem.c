@@ -4,7 +4,7 @@
 
 #include "geom/random.h"
 
-G_DEFINE_QUARK(venation - lsystem - error - quark, lsystem_error)
+G_DEFINE_QUARK(venation-lsystem-error-quark, lsystem_error)
 
 enum { MAX_ITERATIONS = 1000, MAX_SYMBOLS = 1 << 28 };
 
