@@ -2,6 +2,7 @@
 
 #include "geom/affine.h"
 #include "geom/svgscan.h"
+#include "geom/textfile.h"
 
 #include <string.h>
 
@@ -235,12 +236,14 @@ static void report_no_path(Reader *r, const char *file, GError **error)
                 r->skipped ? r->skipped->message : "there is neither a path with id \"outline\" nor a closed path");
 }
 
+enum { LARGEST_FILE = 64 << 20 }; /* bytes */
+
 bool svgfile_read(const char *file, SvgShape *out, GError **error)
 {
     char *text;
     gsize length;
     GError *cause = NULL;
-    if (!g_file_get_contents(file, &text, &length, &cause)) {
+    if (!textfile_read(file, LARGEST_FILE, &text, &length, &cause)) {
         g_set_error_literal(error, OUTLINE_ERROR, OUTLINE_ERROR_READ, cause->message);
         g_error_free(cause);
         return false;

@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "geom/textfile.h"
 #include "lib/settings.h"
 
 static gboolean bad(GError **error, const char *path, unsigned line, const char *text)
@@ -30,11 +31,17 @@ static uint32_t split(char *line, char *part[4])
     return n;
 }
 
+enum { LARGEST_LIST = 256 << 20 }; /* bytes: ten million sources */
+
 gboolean source_list_read(const char *path, ListedSource **list, uint32_t *n, GError **error)
 {
     char *text;
     gsize length;
-    if (!g_file_get_contents(path, &text, &length, error)) {
+    if (!textfile_read(path, LARGEST_LIST, &text, &length, error)) {
+        if (error && g_error_matches(*error, G_FILE_ERROR, G_FILE_ERROR_FAILED)) { /* too large: no failure of the system */
+            (*error)->domain = SETTINGS_ERROR;
+            (*error)->code = SETTINGS_ERROR_SOURCES;
+        }
         g_prefix_error(error, "sources.file: ");
         return FALSE;
     }

@@ -655,6 +655,12 @@ def test_shape():
         same(open(f"a/{name}", "rb").read(), open(f"b/{name}", "rb").read(), name)
 
 
+def test_endless_file():
+    write("small.ini", SMALL)
+    check_refused(run("grow", "small.ini", "--set", "outline.file=/dev/zero"), 3, "/dev/zero")
+    check_refused(run("grow", "small.ini", "--set", "sources.placement=list", "--set", "sources.file=/dev/zero"), 3, "/dev/zero")
+
+
 def test_shape_refuses():
     write("small.ini", SMALL)
     check_refused(run("shape"), 2, "a file is missing")
