@@ -75,6 +75,9 @@ VEN_API VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64
 /* The run record as JSON; free it with g_free. */
 VEN_API char *ven_leaf_record(const VenLeaf *leaf);
 
+/* Why the run ended, in words, and how many sources were given up because no vein could reach them (`given_up` may be NULL). */
+VEN_API const char *ven_leaf_end(const VenLeaf *leaf, uint64_t *given_up);
+
 /* The network. Arrays belong to the leaf. */
 VEN_API uint32_t ven_leaf_nodes(const VenLeaf *leaf);
 VEN_API uint32_t ven_leaf_edges(const VenLeaf *leaf);

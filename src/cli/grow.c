@@ -1,4 +1,5 @@
 /* venation grow: one leaf from one parameter file. */
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/run.h"
@@ -103,6 +104,12 @@ static int carry_out(Grow *g)
                                  ven_leaf_edges(run->leaf), run->steps, run->seed);
     run_summarise(run, what);
     g_free(what);
+    uint64_t given_up;
+    const char *end = ven_leaf_end(run->leaf, &given_up);
+    if (!run->args->quiet && ven_leaf_edges(run->leaf) == 0)
+        fprintf(stderr, "no vein grew: %s\n", end);
+    else if (!run->args->quiet && given_up)
+        fprintf(stderr, "%" G_GUINT64_FORMAT " sources were given up: %s\n", (guint64)given_up, end);
     return run->args->json ? run_print_record(ven_leaf_record(run->leaf)) : 0;
 }
 

@@ -199,6 +199,13 @@ VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed,
     return leaf;
 }
 
+const char *ven_leaf_end(const VenLeaf *leaf, uint64_t *given_up)
+{
+    if (given_up)
+        *given_up = leaf->counts.given_up;
+    return end_reason_text(leaf->counts.end);
+}
+
 /* ---- the network ---- */
 
 uint32_t ven_leaf_nodes(const VenLeaf *leaf) { return leaf->net->n_nodes; }
