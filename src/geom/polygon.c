@@ -176,6 +176,16 @@ Polygon *polygon_new(const Vec2 *v, uint32_t n)
     return p;
 }
 
+Polygon *polygon_scaled(const Polygon *p, double by)
+{
+    Vec2 *v = g_new(Vec2, p->n);
+    for (uint32_t i = 0; i < p->n; i++)
+        v[i] = vec_scale(p->v[i], by);
+    Polygon *scaled = polygon_new(v, p->n);
+    g_free(v);
+    return scaled;
+}
+
 void polygon_free(Polygon *p)
 {
     if (!p)

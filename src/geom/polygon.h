@@ -24,6 +24,9 @@ struct Polygon {
 Polygon *polygon_new(const Vec2 *v, uint32_t n);
 void polygon_free(Polygon *p);
 
+/* The same shape `by` times as large, from the origin; a new one. */
+Polygon *polygon_scaled(const Polygon *p, double by);
+
 /* Even-odd test, consistent on the boundary: of two polygons sharing an edge a point lies in exactly one.
  * One look-up away from the boundary, else a few edges. */
 bool polygon_contains(const Polygon *p, Vec2 q);

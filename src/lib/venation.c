@@ -169,9 +169,7 @@ static Polygon *given_margin(const Params *p, const char *path, GError **error)
     Polygon *leaf = settings_outline(p, error);
     if (!leaf)
         return NULL;
-    for (uint32_t i = 0; i < leaf->n; i++)
-        leaf->v[i] = vec_scale(leaf->v[i], params_number(p, PARAM_GROWTH_FINAL_LENGTH));
-    Polygon *margin = polygon_new(leaf->v, leaf->n);
+    Polygon *margin = polygon_scaled(leaf, params_number(p, PARAM_GROWTH_FINAL_LENGTH));
     polygon_free(leaf);
     return margin;
 }

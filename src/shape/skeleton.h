@@ -53,7 +53,6 @@ typedef struct {
     double clearance;        /* veins nearer than this to others, and tips nearer to the margin, are cleared, segments */
     double min_angle;        /* a sequence that leaves its parent at less than this is moved up or dropped, degrees, 0 … 60 */
     double min_length;       /* shorter sequences are dropped, segments */
-    const Polygon *fictitious; /* reserved for drawn ones; NULL */
 } SkeletonDef;
 
 /* Defaults in proportion to a leaf `length` segments long. */

@@ -279,9 +279,7 @@ Network *simulation_network(const Simulation *s)
         net->kind[e] = EDGE_ANASTOMOSIS;
     }
     Polygon *outline = blade_outline(s->blade);
-    for (uint32_t i = 0; i < outline->n; i++)
-        outline->v[i] = vec_scale(outline->v[i], to_segments);
-    net->margin = polygon_new(outline->v, outline->n);
+    net->margin = polygon_scaled(outline, to_segments);
     polygon_free(outline);
     return net;
 }
