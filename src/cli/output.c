@@ -2,16 +2,25 @@
 
 #include <errno.h>
 #include <glib/gstdio.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 struct Output {
     char *dir, *staging;
     GPtrArray *made; /* folders that were not there before, outermost first */
     gboolean committed;
-    guint files;
+    guint files, stale;
     guint64 bytes;
 };
+
+/* Staging folders are called .venation-HOST-PROCESS-XXXXXX, so that what a killed run left can be told from what a run is writing now, maybe
+ * on another machine. */
+static char *staging_name(void)
+{
+    return g_strdup_printf(".venation-%s-%ld-XXXXXX", g_get_host_name(), (long)getpid());
+}
 
 static gboolean fail(GError **error, const char *what, const char *path)
 {
@@ -41,25 +50,6 @@ static gboolean make_folder(Output *o, const char *path, GError **error)
     return fail(error, "can't make the output folder", path);
 }
 
-Output *output_new(const char *dir, GError **error)
-{
-    Output *o = g_new0(Output, 1);
-    o->made = g_ptr_array_new_with_free_func(g_free);
-    o->dir = g_strdup(dir);
-    /* "a/" would have "a" as its parent and be made twice */
-    for (gsize n = strlen(o->dir); n > 1 && o->dir[n - 1] == '/'; n--)
-        o->dir[n - 1] = '\0';
-    if (make_folder(o, o->dir, error)) {
-        o->staging = g_build_filename(o->dir, ".venation-XXXXXX", NULL);
-        if (g_mkdtemp(o->staging))
-            return o;
-        fail(error, "can't write to the output folder", o->dir);
-        g_clear_pointer(&o->staging, g_free);
-    }
-    output_free(o);
-    return NULL;
-}
-
 static void remove_tree(const char *path)
 {
     GDir *dir = g_dir_open(path, 0, NULL);
@@ -73,6 +63,47 @@ static void remove_tree(const char *path)
     if (dir)
         g_dir_close(dir);
     g_rmdir(path);
+}
+
+/* Removes what runs on this machine left that were killed. */
+static void sweep_dead(const char *path)
+{
+    char *begin = g_strdup_printf(".venation-%s-", g_get_host_name());
+    GDir *dir = g_dir_open(path, 0, NULL);
+    const char *name;
+    while (dir && (name = g_dir_read_name(dir))) {
+        gint64 process = g_str_has_prefix(name, begin) ? g_ascii_strtoll(name + strlen(begin), NULL, 10) : 0;
+        if (process <= 0 || kill((pid_t)process, 0) == 0 || errno != ESRCH)
+            continue;
+        char *child = g_build_filename(path, name, NULL);
+        remove_tree(child);
+        g_free(child);
+    }
+    if (dir)
+        g_dir_close(dir);
+    g_free(begin);
+}
+
+Output *output_new(const char *dir, GError **error)
+{
+    Output *o = g_new0(Output, 1);
+    o->made = g_ptr_array_new_with_free_func(g_free);
+    o->dir = g_strdup(dir);
+    /* "a/" would have "a" as its parent and be made twice */
+    for (gsize n = strlen(o->dir); n > 1 && o->dir[n - 1] == '/'; n--)
+        o->dir[n - 1] = '\0';
+    if (make_folder(o, o->dir, error)) {
+        sweep_dead(o->dir);
+        char *name = staging_name();
+        o->staging = g_build_filename(o->dir, name, NULL);
+        g_free(name);
+        if (g_mkdtemp(o->staging))
+            return o;
+        fail(error, "can't write to the output folder", o->dir);
+        g_clear_pointer(&o->staging, g_free);
+    }
+    output_free(o);
+    return NULL;
 }
 
 void output_discard(Output *o)
@@ -174,15 +205,67 @@ static gboolean move_all(Output *o, const GPtrArray *files, const GPtrArray *fol
     return TRUE;
 }
 
-gboolean output_commit(Output *o, GError **error)
+/* NAME_000120.svg, NAME_000120_opacity.png */
+static gboolean is_frame(const char *rest)
+{
+    return *rest == '_' && strspn(rest + 1, "0123456789") >= 6;
+}
+
+/* Files in a folder of the output that begin with NAME_ or NAME. and are not among `written`: counted; frames among them removed on demand. */
+static guint old_files(const Output *o, const char *folder, const char *name, GHashTable *written, gboolean remove_frames)
+{
+    char *path = g_build_filename(o->dir, folder, NULL);
+    GDir *dir = g_dir_open(path, 0, NULL);
+    const char *entry;
+    guint n = 0;
+    while (dir && (entry = g_dir_read_name(dir))) {
+        const char *rest = entry + strlen(name);
+        if (!g_str_has_prefix(entry, name) || (*rest != '_' && *rest != '.'))
+            continue;
+        char *relative = *folder ? g_build_filename(folder, entry, NULL) : g_strdup(entry);
+        if (!g_hash_table_contains(written, relative)) {
+            n++;
+            char *file = g_build_filename(path, entry, NULL);
+            if (remove_frames && is_frame(rest))
+                g_unlink(file);
+            g_free(file);
+        }
+        g_free(relative);
+    }
+    if (dir)
+        g_dir_close(dir);
+    g_free(path);
+    return n;
+}
+
+/* After all is in place. */
+static void look_after_old(Output *o, const char *name, const GPtrArray *files, const GPtrArray *folders)
+{
+    GHashTable *written = g_hash_table_new(g_str_hash, g_str_equal);
+    for (guint i = 0; i < files->len; i++)
+        g_hash_table_add(written, files->pdata[i]);
+    for (guint i = 0; i < folders->len; i++)
+        old_files(o, folders->pdata[i], name, written, TRUE);
+    o->stale = old_files(o, "", name, written, FALSE);
+    g_hash_table_destroy(written);
+}
+
+gboolean output_commit(Output *o, const char *name, GError **error)
 {
     GPtrArray *files = g_ptr_array_new_with_free_func(g_free), *folders = g_ptr_array_new_with_free_func(g_free);
     list_tree(o, "", files, folders);
     o->committed =
         check_way(o, files, FALSE, error) && check_way(o, folders, TRUE, error) && move_all(o, files, folders, error);
+    if (o->committed)
+        look_after_old(o, name, files, folders);
     g_ptr_array_unref(files);
     g_ptr_array_unref(folders);
     return o->committed;
+}
+
+guint output_stale(const Output *o)
+{
+    return o->stale;
 }
 
 guint output_files(const Output *o)

@@ -16,9 +16,12 @@ void output_free(Output *o);
 /* The hidden folder to write into. */
 const char *output_staging(const Output *o);
 
-/* Moves the files to their places, the .json record last. Refuses before it moves anything when a folder is in the way.
- */
-gboolean output_commit(Output *o, GError **error);
+/* Moves the files to their places, the .json record last. Refuses before it moves anything when a folder is in the way. Frames of an
+ * earlier run of that name make way, as the sequence would mix two runs; other files of its stay (output_stale). */
+gboolean output_commit(Output *o, const char *name, GError **error);
+
+/* Files in the folder that begin like this run's, NAME_ or NAME., and that it did not write: an earlier run's, or another verb's. */
+guint output_stale(const Output *o);
 
 /* Of the committed files. */
 guint output_files(const Output *o);

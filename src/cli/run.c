@@ -219,7 +219,7 @@ int run_write(Run *run, gboolean (*write)(Run *run, const char *dir, gpointer us
     interrupt_urgent(run->interrupt);
     gboolean good = write(run, output_staging(run->output), user, &error);
     interrupt_hold(run->interrupt);
-    good = good && output_commit(run->output, &error);
+    good = good && output_commit(run->output, run->name, &error);
     progress_clear(run->progress);
     return good ? 0 : run_report(with_plain_path(run, error), FALSE);
 }
@@ -234,6 +234,8 @@ void run_summarise(const Run *run, const char *what)
     fprintf(stderr, "%s: %s, %.1f s\n", title && *title ? title : run->name, what, seconds);
     fprintf(stderr, "%s: %u files, %.1f MB\n", dir, output_files(run->output),
             (double)output_bytes(run->output) * 1e-6);
+    if (output_stale(run->output))
+        fprintf(stderr, "%s: %u more files there begin with %s, from other runs\n", dir, output_stale(run->output), run->name);
     g_free(dir);
     g_free(title);
 }

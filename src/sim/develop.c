@@ -209,19 +209,8 @@ uint32_t veins_develop(Simulation *s)
 
 /* ---- removal and anastomosis ---- */
 
-/* Do two nodes descend from one ancestor a few nodes back? Then joining them would close no areole but a speck. */
-static bool close_kin(const Veins *v, uint32_t a, uint32_t b)
-{
-    enum { GENERATIONS = 4 };
-    uint32_t x = a;
-    for (int i = 0; i <= GENERATIONS && x != NO_POINT; i++, x = v->parent[x]) {
-        uint32_t y = b;
-        for (int j = 0; j <= GENERATIONS && y != NO_POINT; j++, y = v->parent[y])
-            if (x == y)
-                return true;
-    }
-    return false;
-}
+/* A vein node and its child are joined already. */
+static bool parent_and_child(const Veins *v, uint32_t a, uint32_t b) { return v->parent[a] == b || v->parent[b] == a || a == b; }
 
 static uint32_t new_arrival(Simulation *s)
 {
@@ -255,7 +244,7 @@ static void join_arrived(Simulation *s, uint32_t k)
     const Arrival *first = &s->arrival[s->source[k].arrived];
     for (uint32_t i = first->next; i != NO_POINT; i = s->arrival[i].next) {
         uint32_t a = first->node, b = s->arrival[i].node;
-        if (vec_dist2(s->veins.pos[a], s->veins.pos[b]) <= most * most && !close_kin(&s->veins, a, b))
+        if (vec_dist2(s->veins.pos[a], s->veins.pos[b]) <= most * most && !parent_and_child(&s->veins, a, b))
             veins_join(&s->veins, a, b, s->blade->step);
     }
 }

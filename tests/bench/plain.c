@@ -335,23 +335,14 @@ static void develop(Plain *w)
 
 /* ---- remove the sources ---- */
 
-static bool close_kin(const Plain *w, uint32_t a, uint32_t b)
-{
-    for (int i = 0; i <= 4 && a != NONE; i++, a = w->parent[a]) {
-        uint32_t y = b;
-        for (int j = 0; j <= 4 && y != NONE; j++, y = w->parent[y])
-            if (a == y)
-                return true;
-    }
-    return false;
-}
+static bool parent_and_child(const Plain *w, uint32_t a, uint32_t b) { return w->parent[a] == b || w->parent[b] == a || a == b; }
 
 static void join_arrived(Plain *w, const Auxin *a)
 {
     double most = w->def->join_distance * w->blade->unit;
     for (uint32_t i = 1; i < a->n_arrived; i++) {
         uint32_t u = a->arrived[0], v = a->arrived[i];
-        if (far2(w->pos[u], w->pos[v]) > most * most || close_kin(w, u, v))
+        if (far2(w->pos[u], w->pos[v]) > most * most || parent_and_child(w, u, v))
             continue;
         bool joined = false;
         for (uint32_t j = 0; j < w->n_joins; j++)
