@@ -118,10 +118,10 @@ static Vec2 child_place(const Simulation *s, uint32_t v, Vec2 direction)
     return vec_add(s->veins.pos[v], vec_scale(direction, s->blade->unit / norm));
 }
 
-/* Not on top of another node, nor out of the blade. */
+/* Not on top of another node, nor out of the blade, nor where a drawn vein is going to be. */
 static bool has_room(const Simulation *s, Vec2 p)
 {
-    return !quadtree_any_within(&s->veins.tree, p, crowding * s->blade->unit) && blade_admits(s->blade, p);
+    return !quadtree_any_within(&s->veins.tree, p, crowding * s->blade->unit) && blade_admits(s->blade, p) && !given_claims(s, p);
 }
 
 /* Grows a child of v in a direction if there is room for it. `looked`: there was before this step. */
@@ -202,6 +202,7 @@ uint32_t veins_develop(Simulation *s)
 {
     uint32_t live = gather_pulls(s);
     grow_pulled(s);
+    given_appear(s, fresh_add);
     if (s->n_fresh)
         sources_update(s);
     return live;

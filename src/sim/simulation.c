@@ -25,7 +25,8 @@ SimulationDef simulation_def_default(void)
 const char *end_reason_text(EndReason r)
 {
     static const char *const text[] = {"running", "every source was reached", "no vein can reach the sources left", "veins.max_steps",
-                                       "no source ever found room", "read from a file"};
+                                       "no source ever found room", "read from a file",
+                                       "drawn, not grown", "written by an L-system"};
     return text[r];
 }
 
@@ -143,7 +144,7 @@ static double source_spacing(const SimulationDef *d, const Blade *b)
 
 static gboolean plant_seeds(Simulation *s, GError **error)
 {
-    if (s->def.n_seeds == 0) {
+    if (s->def.n_seeds == 0 && s->given.n == 0) {
         g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SEEDS, "veins.seeds is empty: a leaf needs at least one first vein node");
         return FALSE;
     }
@@ -190,10 +191,12 @@ Simulation *simulation_new(const SimulationDef *def, GError **error)
     zones_init(&s->zones, field, (def->pattern == PATTERN_OPEN ? 8.0 : 2.0) * least);
     s->share = g_new(Share, SHARES);
     s->touched = g_new(uint32_t, zones_cells(&s->zones));
+    given_prepare(s);
     if (!sources_prepare(s, error) || !plant_seeds(s, error)) {
         simulation_free(s);
         return NULL;
     }
+    given_appear(s, NULL);
     return s;
 }
 
@@ -206,6 +209,7 @@ void simulation_free(Simulation *s)
     pool_free(s->pool);
     reach_free(s->reach);
     veins_clear(&s->veins);
+    given_clear(&s->given);
     zones_clear(&s->zones);
     blade_free(s->blade);
     g_free(s->place);
@@ -250,6 +254,16 @@ double simulation_done(const Simulation *s)
     double expected = MAX((double)s->blade->last_step, s->blade->last_length * 1.1);
     double part = (double)s->blade->step / expected;
     return s->counts.end != END_RUNNING ? 1.0 : part < 0.99 ? part : 0.99;
+}
+
+const uint32_t *simulation_given(const Simulation *s) { return s->given.n ? s->given.node : NULL; }
+
+double simulation_final_length(const SimulationDef *def, GError **error)
+{
+    Blade *blade = blade_new(def->leaf, &def->growth, error);
+    double length = blade ? blade->last_length : 0.0;
+    blade_free(blade);
+    return length;
 }
 
 Network *simulation_network(const Simulation *s)

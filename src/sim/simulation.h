@@ -34,6 +34,8 @@ typedef struct {
     double kill_distance;
     const Vec2 *seeds; /* first nodes, in initial leaf lengths; borrowed during simulation_new */
     uint32_t n_seeds;
+    const Network *given; /* veins that are there from the start, or as soon as the margin of marginal growth has passed them; NULL: none. Borrowed */
+    double given_length;  /* leaf length in that network's segments, whose base is at 0,0 and tip at 0,length */
     double sinus_depth;   /* leaf lengths */
     double join_distance; /* segments */
     uint32_t max_steps;   /* 0: no limit */
@@ -58,7 +60,9 @@ typedef enum {
     END_UNREACHED,  /* growth has ended and none of the sources left can be reached */
     END_MAX_STEPS,
     END_BARE,       /* growth has ended and no source ever found room */
-    END_LOADED,     /* there was no run: the network was read from a file */
+    END_LOADED,     /* there was no run: the network was read from a file, */
+    END_DRAWN,      /* drawn or found in a scan, */
+    END_LSYSTEM,    /* or written by an L-system */
 } EndReason;
 const char *end_reason_text(EndReason r);
 
@@ -88,7 +92,13 @@ const Blade *simulation_blade(const Simulation *s);
 /* Rough part of the run that is done, 0 … 1, for progress bars. */
 double simulation_done(const Simulation *s);
 
-/* The veins as they are now, as a graph in segments: nodes and edges without widths and orders (widths_assign, orders_assign). */
+/* The veins as they are now, as a graph in segments: nodes and edges without widths and orders (network_assign_widths). */
 Network *simulation_network(const Simulation *s);
+
+/* The number of each node of def.given in it, UINT32_MAX for one that is not there yet; NULL without given veins. */
+const uint32_t *simulation_given(const Simulation *s);
+
+/* Leaf length at the end of growth, segments; 0 for growth that contradicts itself, with the error. */
+double simulation_final_length(const SimulationDef *def, GError **error);
 
 #endif

@@ -83,11 +83,23 @@ typedef struct {
     uint32_t n;    /* nodes entered */
 } Paths;
 
+/* The veins of SimulationDef.given. */
+typedef struct {
+    uint32_t n, next;  /* nodes; how many are there yet */
+    Vec2 *place;       /* [n] marginal growth: in the frame; else material */
+    uint32_t *step;    /* [n] at which it appears */
+    uint32_t *turn;    /* [n] the order in which they do */
+    uint32_t *node;    /* [n] its number among the veins */
+    uint32_t *parent;  /* [n] among the given ones */
+    Quadtree pending;  /* places of those that will come */
+} Given;
+
 struct Simulation {
     SimulationDef def;
     Blade *blade;
     Reach *reach; /* NULL: no sinus can come between a source and a vein */
     Veins veins;
+    Given given;
     Pool *pool;
     /* Sources, sorted by place from time to time so that neighbours in the blade are neighbours in memory. One that was removed keeps
      * its slot, idle and nowhere (NaN), until the next sorting. Bytes a source, the index of zones included: 53 in an open pattern, 105
@@ -130,6 +142,12 @@ void veins_init(Veins *v, Box2 field);
 void veins_clear(Veins *v);
 uint32_t veins_add(Veins *v, Vec2 pos, uint32_t parent, uint32_t step);
 bool veins_join(Veins *v, uint32_t a, uint32_t b, uint32_t step); /* FALSE: they are joined already */
+
+/* given.c */
+void given_prepare(Simulation *s);
+void given_clear(Given *g);
+bool given_claims(const Simulation *s, Vec2 p); /* a drawn vein will pass here, so no other grows in its place */
+void given_appear(Simulation *s, void (*fresh)(Simulation *s, uint32_t node)); /* those whose step has come; tells each, unless NULL */
 
 /* sources.c */
 gboolean sources_prepare(Simulation *s, GError **error);

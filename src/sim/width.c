@@ -119,11 +119,11 @@ static void assign_orders(Network *net, Chains in, Chains out, const uint32_t *r
     }
 }
 
-/* A node's order is that of the vein that grew it; an anastomosis takes the higher (finer) of its ends'. */
-static void assign_anastomoses(Network *net, Chains in)
+/* A node's order is that of the vein that grew it; an anastomosis takes the higher (finer) of its ends'. `of`: not those that were drawn. */
+static void assign_anastomoses(Network *net, Chains in, const uint32_t *of)
 {
     for (uint32_t e = 0; e < net->n_edges; e++) {
-        if (net->kind[e] != EDGE_ANASTOMOSIS)
+        if (net->kind[e] != EDGE_ANASTOMOSIS || (of && of[e] != NONE))
             continue;
         uint8_t order = 1, rank = 1;
         const uint32_t end[2] = {net->tail[e], net->head[e]};
@@ -190,8 +190,93 @@ void network_assign_widths(Network *net, const WidthDef *def)
         assign_flow(net, in, out, def->thickening);
     assign_width(net, def);
     assign_ranks(net, in, out, def->rank_ratio);
-    assign_anastomoses(net, in);
+    assign_anastomoses(net, in, NULL);
     g_free(root);
+    chains_free(in);
+    chains_free(out);
+}
+
+/* ---- drawn veins ---- */
+
+/* The drawn edge that each edge of net is, NONE for those that grew. */
+static uint32_t *drawn_edges(const Network *net, const Network *drawn, const uint32_t *given)
+{
+    uint32_t *of = g_new(uint32_t, MAX(net->n_edges, 1)), *name = g_new(uint32_t, MAX(net->n_nodes, 1));
+    Chains in = chains_new(drawn, drawn->head);
+    for (uint32_t v = 0; v < net->n_nodes; v++)
+        name[v] = NONE;
+    for (uint32_t v = 0; v < drawn->n_nodes; v++)
+        if (given[v] != NONE)
+            name[given[v]] = v;
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        uint32_t a = name[net->tail[e]], b = name[net->head[e]];
+        of[e] = NONE;
+        for (int way = 0; way < 2 && a != NONE && b != NONE; way++) /* an anastomosis may have been turned round */
+            for (uint32_t d = in.first[way ? a : b]; d != NONE && of[e] == NONE; d = in.next[d])
+                if (drawn->tail[d] == (way ? b : a) && drawn->kind[d] == net->kind[e])
+                    of[e] = d;
+    }
+    chains_free(in);
+    g_free(name);
+    return of;
+}
+
+/* Orders and veins of what grew, from those of what was drawn. */
+static void derive_orders(Network *net, Chains in, Chains out, const uint32_t *of, const uint32_t *flow_vein)
+{
+    for (uint32_t v = 0; v < net->n_nodes; v++) {
+        uint32_t entry = grown_from(net, in, v);
+        bool goes_on = false; /* the vein that led here is drawn beyond, too */
+        for (uint32_t e = out.first[v]; e != NONE && entry != NONE; e = out.next[e])
+            goes_on |= of[e] != NONE && net->kind[e] == EDGE_VEIN && net->vein[e] == net->vein[entry];
+        for (uint32_t e = out.first[v]; e != NONE; e = out.next[e]) {
+            if (of[e] != NONE || net->kind[e] != EDGE_VEIN)
+                continue;
+            if (entry == NONE) {
+                start_vein(net, e, net->order[e]);
+            } else if (!goes_on && flow_vein[e] == flow_vein[entry]) {
+                net->vein[e] = net->vein[entry];
+                net->order[e] = net->order[entry];
+            } else {
+                start_vein(net, e, (uint8_t)MIN(net->order[entry] + 1, 250));
+            }
+        }
+    }
+}
+
+/* Along each vein from its base, widths of what grew stay within that of what it grew from. */
+static void limit_widths(Network *net, Chains in, Chains out, const uint32_t *of)
+{
+    for (uint32_t v = 0; v < net->n_nodes; v++) {
+        uint32_t entry = grown_from(net, in, v);
+        for (uint32_t e = out.first[v]; e != NONE && entry != NONE; e = out.next[e])
+            if (of[e] == NONE)
+                net->width[e] = MIN(net->width[e], net->width[entry]);
+    }
+}
+
+void network_keep_drawn(Network *net, const WidthDef *def, const Network *drawn, const uint32_t *given)
+{
+    Chains in = chains_new(net, net->head), out = chains_new(net, net->tail);
+    uint32_t *of = drawn_edges(net, drawn, given), *flow_vein = g_memdup2(net->vein, sizeof *net->vein * net->n_edges);
+    net->n_veins = drawn->n_veins;
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        if (of[e] == NONE)
+            continue;
+        net->order[e] = drawn->order[of[e]];
+        net->vein[e] = drawn->vein[of[e]];
+        if (drawn->width[of[e]] > 0.0)
+            net->width[e] = drawn->width[of[e]];
+    }
+    derive_orders(net, in, out, of, flow_vein);
+    limit_widths(net, in, out, of);
+    assign_ranks(net, in, out, def->rank_ratio);
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        if (of[e] != NONE && net->kind[e] == EDGE_ANASTOMOSIS)
+            net->rank[e] = drawn->rank[of[e]];
+    assign_anastomoses(net, in, of);
+    g_free(of);
+    g_free(flow_vein);
     chains_free(in);
     chains_free(out);
 }

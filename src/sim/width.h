@@ -25,4 +25,10 @@ WidthDef width_def_default(void);
  * the widest primary down; a fork of nearly equal veins keeps the rank. O(nodes + edges). */
 void network_assign_widths(Network *net, const WidthDef *def);
 
+/* After that: edges that were drawn (given[n] is the number of each of its nodes in `net`, UINT32_MAX for none) get the orders, veins and, where
+ * they are above 0, the widths of the drawing back. What grew on from the end of a drawn vein continues it; what grew out of its side is of
+ * the next order; nothing that grew is wider than the vein it left. Murray's law no longer holds where drawn and grown veins meet. O(nodes +
+ * edges). */
+void network_keep_drawn(Network *net, const WidthDef *def, const Network *drawn, const uint32_t *given);
+
 #endif
