@@ -41,6 +41,16 @@ VEN_API char *ven_params_get(const VenParams *params, const char *key);
 VEN_API char *ven_params_text(const VenParams *params);
 VEN_API void ven_params_free(VenParams *params);
 
+/* Takes the scan of a real leaf (PNG, JPEG, TIFF) as the leaf: sets scan.file, and what else is not given to what suits a real outline. */
+VEN_API gboolean ven_params_use_scan(VenParams *params, const char *image, GError **error);
+
+/* How many leaves the scan of the parameters holds (scan.leaf counts them); 0 with an error. */
+VEN_API uint32_t ven_scan_leaves(const VenParams *params, GError **error);
+
+/* How many nodes the outline of that scan has by side of the marching square and tolerance of simplification (Hong 2005, tables 5.1 and 5.2),
+ * with area and perimeter: text for people; free it with g_free. NULL with an error. */
+VEN_API char *ven_scan_table(const VenParams *params, GError **error);
+
 /* What a run reports while it goes on, and how it is told to stop. */
 typedef struct {
     uint32_t step, nodes, sources;
@@ -53,7 +63,7 @@ typedef struct {
 typedef struct {
     unsigned threads;        /* 0: all processors */
     uint32_t snapshot_every; /* 0: never; else the leaf is grown twice, the first time to learn the scale that its frames share */
-    gboolean (*progress)(const VenProgress *progress, gpointer user); /* called at every step when not NULL; FALSE stops the run, which then fails with G_IO_ERROR_CANCELLED */
+    gboolean (*progress)(const VenProgress *progress, gpointer user); /* called at every step when not NULL, with snapshots before the first too (step 0); FALSE stops the run, which then fails with G_IO_ERROR_CANCELLED */
     gpointer user;
 } VenOptions;
 
@@ -67,6 +77,10 @@ VEN_API gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *nam
 /* Writes one picture of a leaf that may still be growing: <dir>/frames/<name>_<step>.svg, or with `maps` the maps the parameters ask
  * for. The step has six digits or more. */
 VEN_API gboolean ven_write_frame(const VenLeaf *leaf, const char *dir, const char *name, gboolean maps, GError **error);
+
+/* Of a leaf from a scan, what a person goes on with: <dir>/<name>_drawing.svg with the scan, the outline and the veins as layers, a copy of
+ * the scan, and <name>.ini, a parameter file that refers to both. */
+VEN_API gboolean ven_write_capture(const VenLeaf *leaf, const char *dir, const char *name, GError **error);
 
 /* A leaf from a network that was grown before or drawn: a GraphML file with node positions in segments, base at 0,0, and the margin; see
  * the README. `params` give widths where the file has none, the maps, and what is shaped. */

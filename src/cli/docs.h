@@ -26,6 +26,8 @@ char *docs_ini(const Selection *sel);
 char *docs_markdown(const Selection *sel);
 char *docs_man(void);
 char *docs_bash(void);
+char *docs_zsh(void);
+char *docs_fish(void);
 
 /* The default as shown to people: a dash for nothing. */
 const char *docs_default(const ParamInfo *info);

@@ -9,7 +9,7 @@ static char *argument(const char *description)
 {
     if (strchr(description, '|'))
         return g_strdelimit(g_strdup(description), "|", ' ');
-    static const char *const kind[] = {"DIR", "LIST", "MODELS", "PARAMS", NULL};
+    static const char *const kind[] = {"DIR", "LIST", "MODELS", "PARAMS", "IMAGE", "DRAWING", NULL};
     if (g_strv_contains(kind, description))
         return g_strdup_printf("@%s", description);
     return g_strdup(strchr(description, '=') ? "@SET" : "");
@@ -86,6 +86,14 @@ static void parameters(GString *s)
 }
 
 static const char script[] =
+    "_venation_images='png jpg jpeg tif tiff PNG JPG JPEG TIF TIFF'\n\n"
+    "# Folders, and files that end with one of the words after $1.\n"
+    "_venation_files()\n"
+    "{\n"
+    "    local cur=$1 end\n"
+    "    compopt -o filenames 2>/dev/null\n"
+    "    mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"; for end in \"${@:2}\"; do compgen -f -X \"!*.$end\" -- \"$cur\"; done)\n"
+    "}\n\n"
     "# Puts into COMPREPLY what of kind $1 (see above; else plain words) begins with $2.\n"
     "_venation_reply()\n"
     "{\n"
@@ -93,15 +101,11 @@ static const char script[] =
     "    case $1 in\n"
     "    @DIR) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"); return ;;\n"
     "    @FILE) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -f -- \"$cur\"); return ;;\n"
-    "    @PARAMS)\n"
-    "        compopt -o filenames 2>/dev/null\n"
-    "        mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"; compgen -f -X '!*.ini' -- \"$cur\")\n"
-    "        return ;;\n"
-    "    '@PARAMS|NETWORK')\n"
-    "        compopt -o filenames 2>/dev/null\n"
-    "        mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"; compgen -f -X '!*.ini' -- \"$cur\";\n"
-    "            compgen -f -X '!*.graphml' -- \"$cur\")\n"
-    "        return ;;\n"
+    "    @PARAMS) _venation_files \"$cur\" ini; return ;;\n"
+    "    '@PARAMS|IMAGE') _venation_files \"$cur\" ini $_venation_images; return ;;\n"
+    "    '@PARAMS|NETWORK|IMAGE') _venation_files \"$cur\" ini graphml $_venation_images; return ;;\n"
+    "    @IMAGE) _venation_files \"$cur\" $_venation_images; return ;;\n"
+    "    @DRAWING) _venation_files \"$cur\" svg txt; return ;;\n"
     "    @SET)\n"
     "        if [[ $cur == *=* ]]; then\n"
     "            _venation_reply \"$(_venation_values \"${cur%%=*}\")\" \"${cur#*=}\"\n"

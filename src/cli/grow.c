@@ -13,11 +13,9 @@ typedef struct {
 static const GOptionEntry options[] = {
     RUN_OPTIONS,
     {"maps", 0, 0, G_OPTION_ARG_FILENAME, FIELD(maps),
-     "Maps to paint: all, none, or names parted by commas, as --set texture.maps", "LIST"},
-    {"every", 0, 0, G_OPTION_ARG_FILENAME, FIELD(every), "Write a frame of every K-th step into the folder frames",
-     "K"},
-    {"frames", 0, 0, G_OPTION_ARG_FILENAME, FIELD(frames), "What the frames are: drawings (the default) or maps",
-     "svg|maps"},
+     "Maps to paint: all, none, or names with commas or spaces between them, as --set texture.maps", "LIST"},
+    {"every", 0, 0, G_OPTION_ARG_FILENAME, FIELD(every), "Write a frame of every K-th step into the folder frames", "K"},
+    {"frames", 0, 0, G_OPTION_ARG_FILENAME, FIELD(frames), "What the frames are: svg, drawings (the default), or maps, those that --maps names", "svg|maps"},
     {0},
 };
 
@@ -33,15 +31,11 @@ static gboolean read_args(Grow *g, const Verb *verb, const GrowArgs *a)
 {
     *g = (Grow){.args = a};
     if (!run_read_args(&g->run, verb, &a->run) ||
-        (a->every && !cli_count(verb, "--every", a->every, G_MAXUINT32, &g->every)))
+        (a->every && !cli_count_from(verb, "--every", a->every, 1, G_MAXUINT32, &g->every)))
         return FALSE;
     g->frame_maps = a->frames && strcmp(a->frames, "maps") == 0;
     if (a->frames && !g->frame_maps && strcmp(a->frames, "svg") != 0) {
         cli_usage(verb, "--frames %s: must be svg or maps", a->frames);
-        return FALSE;
-    }
-    if (a->every && !g->every) {
-        cli_usage(verb, "--every must be at least 1");
         return FALSE;
     }
     if (a->frames && !g->every) {
@@ -58,7 +52,7 @@ static gboolean read_params(Grow *g, GError **error)
     if (!g->args->maps)
         return TRUE;
     char *maps = g_strdelimit(g_strdup(g->args->maps), ",", ' ');
-    gboolean good = run_set(&g->run, "texture.maps", maps, error);
+    gboolean good = cli_set(g->run.params, "--maps", "texture.maps", maps, error);
     g_free(maps);
     return good;
 }
@@ -100,16 +94,17 @@ static int carry_out(Grow *g)
         status = run_write(run, write_leaf, NULL);
     if (status != 0)
         return status;
-    char *what = g_strdup_printf("%u nodes and %u edges in %u steps, seed %" G_GUINT64_FORMAT, ven_leaf_nodes(run->leaf),
-                                 ven_leaf_edges(run->leaf), run->steps, run->seed);
+    uint32_t nodes = ven_leaf_nodes(run->leaf), edges = ven_leaf_edges(run->leaf);
+    char *what = g_strdup_printf("%u node%s and %u edge%s in %u step%s, seed %" G_GUINT64_FORMAT, nodes, cli_s(nodes), edges, cli_s(edges),
+                                 run->steps, cli_s(run->steps), run->seed);
     run_summarise(run, what);
     g_free(what);
     uint64_t given_up;
     const char *end = ven_leaf_end(run->leaf, &given_up);
-    if (!run->args->quiet && ven_leaf_edges(run->leaf) == 0)
+    if (!run->args->quiet && edges == 0)
         fprintf(stderr, "no vein grew: %s\n", end);
     else if (!run->args->quiet && given_up)
-        fprintf(stderr, "%" G_GUINT64_FORMAT " sources were given up: %s\n", (guint64)given_up, end);
+        fprintf(stderr, "%" G_GUINT64_FORMAT " source%s given up: %s\n", (guint64)given_up, given_up == 1 ? " was" : "s were", end);
     return run->args->json ? run_print_record(ven_leaf_record(run->leaf)) : 0;
 }
 
@@ -129,11 +124,12 @@ static int run_grow(const Verb *verb, int argc, char **argv)
 
 const Verb grow_verb = {
     "grow",
-    "PARAMS",
+    "PARAMS|IMAGE",
     "Grow a leaf and write its maps, drawing, network and record",
     "Grows the leaf that the parameter file PARAMS describes and writes it into a folder: texture maps, a drawing, the "
     "network, "
-    "and the run record. Equal parameters and seed give equal files, whatever the number of threads.\n\n"
+    "and the run record. Equal parameters and seed give equal files, whatever the number of threads. IMAGE is the scan of a real "
+    "leaf instead: its outline, colours and larger veins are taken, and the finer veins grow between them.\n\n"
     "The files appear when all is done: a run that fails or is interrupted leaves nothing behind.",
     options,
     run_grow,

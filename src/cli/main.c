@@ -11,7 +11,7 @@
 
 const Verb *const *cli_verbs(void)
 {
-    static const Verb *const verbs[] = {&grow_verb, &shape_verb, &params_verb, &help_verb, NULL};
+    static const Verb *const verbs[] = {&grow_verb, &shape_verb, &capture_verb, &params_verb, &help_verb, NULL};
     return verbs;
 }
 

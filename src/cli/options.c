@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/docs.h"
+#include "lib/leaf.h"
 #include "param/suggest.h"
 
 static const GOptionEntry common[] = {
@@ -111,19 +112,33 @@ void cli_clear(const Verb *verb, void *args)
     }
 }
 
-gboolean cli_count(const Verb *verb, const char *option, const char *text, guint64 most, guint64 *out)
+gboolean cli_count_from(const Verb *verb, const char *option, const char *text, guint64 least, guint64 most, guint64 *out)
 {
     gboolean hex = g_ascii_strncasecmp(text, "0x", 2) == 0;
     const char *digits = hex ? text + 2 : text;
     errno = 0;
     guint64 value = g_ascii_strtoull(digits, NULL, hex ? 16 : 10);
-    if (!*digits || digits[strspn(digits, hex ? "0123456789abcdefABCDEF" : "0123456789")] || errno || value > most) {
-        cli_usage(verb, "%s %s: must be a whole number from 0 to %" G_GUINT64_FORMAT, option, text, most);
+    if (!*digits || digits[strspn(digits, hex ? "0123456789abcdefABCDEF" : "0123456789")] || errno || value < least || value > most) {
+        cli_usage(verb, "%s %s: must be a whole number from %" G_GUINT64_FORMAT " to %" G_GUINT64_FORMAT, option, text, least, most);
         return FALSE;
     }
     *out = value;
     return TRUE;
 }
+
+gboolean cli_count(const Verb *verb, const char *option, const char *text, guint64 most, guint64 *out)
+{
+    return cli_count_from(verb, option, text, 0, most, out);
+}
+
+gboolean cli_set(VenParams *params, const char *option, const char *key, const char *value, GError **error)
+{
+    int id = param_find(key);
+    g_assert(id >= 0); /* the verbs' own keys */
+    return params_set(params->values, (ParamId)id, value, option, error);
+}
+
+const char *cli_s(guint64 count) { return count == 1 ? "" : "s"; }
 
 static void tell(const char *format, va_list args)
 {

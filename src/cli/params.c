@@ -15,7 +15,7 @@ static const GOptionEntry options[] = {
     {"json", 0, 0, G_OPTION_ARG_NONE, (gpointer)offsetof(ParamsArgs, json), "The same as --format=json", NULL},
     {"format", 0, 0, G_OPTION_ARG_FILENAME, (gpointer)offsetof(ParamsArgs, format),
      "Plain text (the default), JSON, a parameter file of all defaults, a Markdown page, the man page, or completion "
-     "for bash", "text|json|ini|markdown|man|bash"},
+     "for bash, zsh or fish", "text|json|ini|markdown|man|bash|zsh|fish"},
     {0},
 };
 
@@ -34,6 +34,16 @@ static char *make_bash(const Selection *sel)
     return docs_bash();
 }
 
+static char *make_zsh(const Selection *sel)
+{
+    return docs_zsh();
+}
+
+static char *make_fish(const Selection *sel)
+{
+    return docs_fish();
+}
+
 static const struct {
     const char *name;
     gboolean whole; /* about the whole command, not of some parameters */
@@ -41,16 +51,25 @@ static const struct {
 } formats[] = {
     {"text", FALSE, make_text},         {"json", FALSE, docs_json}, {"ini", FALSE, docs_ini},
     {"markdown", FALSE, docs_markdown}, {"man", TRUE, make_man},    {"bash", TRUE, make_bash},
+    {"zsh", TRUE, make_zsh},            {"fish", TRUE, make_fish},
 };
 
-/* Selects "section.key", a whole section, or a key in whatever sections have it. */
+static gboolean is_section(const char *word)
+{
+    gboolean found = FALSE;
+    for (int i = 0; i < PARAM_COUNT && !found; i++)
+        found = strcmp(param_info((ParamId)i)->section, word) == 0;
+    return found;
+}
+
+/* Selects "section.key", a whole section, or else a key in whatever sections have it. */
 static gboolean select_params(const char *word, Selection *sel)
 {
     int id = param_find(word);
-    gboolean any = FALSE;
+    gboolean any = FALSE, section = is_section(word);
     for (int i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = param_info((ParamId)i);
-        sel->has[i] = !word[0] || i == id || strcmp(info->section, word) == 0 || strcmp(info->key, word) == 0;
+        sel->has[i] = !word[0] || i == id || strcmp(section ? info->section : info->key, word) == 0;
         any |= sel->has[i];
     }
     return any;
@@ -88,7 +107,7 @@ static int print(const Verb *verb, const ParamsArgs *args)
         return status;
     }
     const char *near = suggest_nearest(format, names, G_N_ELEMENTS(names));
-    return cli_usage(verb, "--format %s: must be one of text, json, ini, markdown, man or bash%s%s%s", format,
+    return cli_usage(verb, "--format %s: must be one of text, json, ini, markdown, man, bash, zsh or fish%s%s%s", format,
                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 

@@ -5,6 +5,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cli/cli.h"
+
 struct Progress {
     char *label;
     gint64 begun, drawn; /* monotonic time, µs */
@@ -84,8 +86,8 @@ void progress_update(Progress *p, const VenProgress *now)
     p->drawn = time;
     double done = CLAMP(now->done, 0, 1);
     int seconds = (int)((time - p->begun) / G_USEC_PER_SEC);
-    char *facts = g_strdup_printf(" %3d%%  step %u  %u nodes  %u sources  %d:%02d", (int)(done * 100), now->step,
-                                  now->nodes, now->sources, seconds / 60, seconds % 60);
+    char *facts = g_strdup_printf(" %3d%%  step %u  %u node%s  %u source%s  %d:%02d", (int)(done * 100), now->step, now->nodes,
+                                  cli_s(now->nodes), now->sources, cli_s(now->sources), seconds / 60, seconds % 60);
     int room = columns() - 1, label = (int)g_utf8_strlen(p->label, -1),
         bar = MIN(30, room - label - 1 - (int)strlen(facts));
     if (bar < 5) {

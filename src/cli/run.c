@@ -91,9 +91,27 @@ static gboolean load(Run *run, const char *path, GError **error)
     return FALSE;
 }
 
+gboolean run_is_image(const char *path)
+{
+    static const struct {
+        gsize n;
+        char bytes[5];
+    } begin[] = {{4, "\x89PNG"}, {3, "\xFF\xD8\xFF"}, {4, "II*\0"}, {4, "MM\0*"}};
+    char head[4] = {0};
+    FILE *file = fopen(path, "rb");
+    gsize n = file && g_file_test(path, G_FILE_TEST_IS_REGULAR) ? fread(head, 1, sizeof head, file) : 0;
+    if (file)
+        fclose(file);
+    for (gsize i = 0; i < G_N_ELEMENTS(begin); i++)
+        if (n >= begin[i].n && memcmp(head, begin[i].bytes, begin[i].n) == 0)
+            return TRUE;
+    return FALSE;
+}
+
 gboolean run_read_params(Run *run, const char *path, GError **error)
 {
-    if (!path)
+    gboolean image = run_is_image(run->path);
+    if (!path || (image && path == run->path))
         run->params = ven_params_new();
     else if (!load(run, path, error))
         return FALSE;
@@ -105,7 +123,9 @@ gboolean run_read_params(Run *run, const char *path, GError **error)
         if (!good)
             return FALSE;
     }
-    return !run->args->size || run_set(run, "texture.size", run->args->size, error);
+    if (image && !ven_params_use_scan(run->params, run->path, error))
+        return FALSE;
+    return !run->args->size || cli_set(run->params, "--size", "texture.size", run->args->size, error);
 }
 
 /* ---- errors ---- */
@@ -232,7 +252,7 @@ void run_summarise(const Run *run, const char *what)
     char *dir = g_filename_display_name(run->dir);
     double seconds = (double)(g_get_monotonic_time() - run->begun) / G_USEC_PER_SEC;
     fprintf(stderr, "%s: %s, %.1f s\n", title && *title ? title : run->name, what, seconds);
-    fprintf(stderr, "%s: %u files, %.1f MB\n", dir, output_files(run->output),
+    fprintf(stderr, "%s: %u file%s, %.1f MB\n", dir, output_files(run->output), cli_s(output_files(run->output)),
             (double)output_bytes(run->output) * 1e-6);
     if (output_stale(run->output))
         fprintf(stderr, "%s: %u more files there begin with %s, from other runs\n", dir, output_stale(run->output), run->name);

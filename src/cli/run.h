@@ -51,7 +51,11 @@ typedef struct {
 /* What can be told from the command line alone; FALSE is a usage error, told. */
 gboolean run_read_args(Run *run, const Verb *verb, const RunArgs *args);
 
-/* Parameters from `path` (NULL: defaults) with --set and --size over them. FALSE with an error. */
+/* Whether a file begins as a PNG, JPEG or TIFF image does. */
+gboolean run_is_image(const char *path);
+
+/* Parameters from `path` (NULL, or the image given: defaults) with --set and --size over them; when the file given is an image it is the
+ * scan. FALSE with an error. */
 gboolean run_read_params(Run *run, const char *path, GError **error);
 
 /* Sets one parameter over them. */

@@ -11,7 +11,7 @@ typedef struct {
 #define FIELD(name) (gpointer) offsetof(ShapeArgs, name)
 static const GOptionEntry options[] = {
     RUN_OPTIONS,
-    {"params", 0, 0, G_OPTION_ARG_FILENAME, FIELD(params), "Parameter file for a NETWORK: colours, mesh, pose (default: the defaults)", "PARAMS"},
+    {"params", 0, 0, G_OPTION_ARG_FILENAME, FIELD(params), "Parameter file for a NETWORK or an IMAGE: colours, mesh, pose (default: the defaults)", "PARAMS"},
     {"pose", 0, 0, G_OPTION_ARG_FILENAME, FIELD(pose), "Ready-made pose, as --set pose.preset",
      "flat|cupped|folded|drooping|curled_tip|wavy|withered"},
     {"formats", 0, 0, G_OPTION_ARG_FILENAME, FIELD(formats),
@@ -23,20 +23,23 @@ static const GOptionEntry options[] = {
 
 static gboolean is_network(const char *path) { return g_str_has_suffix(path, ".graphml") || g_str_has_suffix(path, ".xml"); }
 
+/* Not itself the parameter file. */
+static gboolean takes_params(const char *path) { return is_network(path) || run_is_image(path); }
+
 static gboolean read_params(Run *run, const ShapeArgs *a, GError **error)
 {
     const struct {
-        const char *key, *value;
-    } given[] = {{"pose.preset", a->pose}, {"mesh.levels", a->lod}, {"export.rig", a->rig}};
-    if (!run_read_params(run, is_network(run->path) ? a->params : run->path, error))
+        const char *option, *key, *value;
+    } given[] = {{"--pose", "pose.preset", a->pose}, {"--lod", "mesh.levels", a->lod}, {"--rig", "export.rig", a->rig}};
+    if (!run_read_params(run, takes_params(run->path) ? a->params : run->path, error))
         return FALSE;
     for (gsize i = 0; i < G_N_ELEMENTS(given); i++)
-        if (given[i].value && !run_set(run, given[i].key, given[i].value, error))
+        if (given[i].value && !cli_set(run->params, given[i].option, given[i].key, given[i].value, error))
             return FALSE;
     if (!a->formats)
         return TRUE;
     char *formats = g_strdelimit(g_strdup(a->formats), ",", ' ');
-    gboolean good = run_set(run, "export.models", formats, error);
+    gboolean good = cli_set(run->params, "--formats", "export.models", formats, error);
     g_free(formats);
     return good;
 }
@@ -85,8 +88,8 @@ static int run_shape(const Verb *verb, int argc, char **argv)
         VenShape *shape = NULL;
         status = EXIT_USAGE;
         if (run_read_args(&run, verb, &args.run)) {
-            if (args.params && !is_network(run.path))
-                cli_usage(verb, "--params goes with a network; %s is the parameter file", run.path);
+            if (args.params && !takes_params(run.path))
+                cli_usage(verb, "--params goes with a network or an image; %s is the parameter file", run.path);
             else
                 status = carry_out(&run, &args, &shape);
         }
@@ -99,12 +102,13 @@ static int run_shape(const Verb *verb, int argc, char **argv)
 
 const Verb shape_verb = {
     "shape",
-    "PARAMS|NETWORK",
+    "PARAMS|NETWORK|IMAGE",
     "Bend a leaf by its veins and write it as a model",
     "Makes a leaf blade for other programs: the larger veins of a venation are its skeleton, which is bent as [pose] asks; the blade "
     "between them is meshed and interpolated, veins and petiole become solids, and models are written for glTF, OBJ, PLY and POV-Ray, with "
     "the maps they are dressed in.\n\n"
-    "PARAMS is a parameter file, and the leaf is grown first. NETWORK is a GraphML file that grow (or a person) wrote.\n\n"
+    "PARAMS is a parameter file, and the leaf is grown first. NETWORK is a GraphML file that grow (or a person) wrote. IMAGE "
+    "is the scan of a real leaf: its outline and colours are taken, its larger veins looked for, and finer ones grown between them.\n\n"
     "The files appear when all is done: a run that fails or is interrupted leaves nothing behind.",
     options,
     run_shape,

@@ -6,9 +6,10 @@
 #include "geom/svgscan.h"
 #include "geom/teeth.h"
 
-/* Leaves are at most this many times as large as they are long from base to tip, and have at most this many vertices.
+/* Leaves are at most this many times as large as they are long from base to tip, their mean width is at least this part
+ * of their size (a long pine needle's is 0.004), and they have at most this many vertices.
  */
-static const double largest = 1000.0;
+static const double largest = 1000.0, thinnest = 0.001;
 enum { MAX_VERTICES = 1000000, MAX_TEETH = 100000 };
 
 G_DEFINE_QUARK(outline-error-quark, outline_error)
@@ -296,20 +297,55 @@ static bool place_base_tip(Maker *m, GError **error)
 
 /* --- checks --- */
 
-static bool check_simple(const Maker *m, const char *hint, GError **error)
+/* Whether all vertices lie on one line, to rounding. */
+static bool is_flat(const Maker *m)
 {
-    if (m->margin->len < 3 || !(fabs(twice_area(m)) > 1e-9))
+    const Vec2 *v = points(m);
+    guint far = 0;
+    for (guint i = 1; i < m->margin->len; i++)
+        far = vec_dist2(v[i], v[0]) > vec_dist2(v[far], v[0]) ? i : far;
+    Vec2 d = vec_sub(v[far], v[0]);
+    for (guint i = 1; i < m->margin->len; i++)
+        if (fabs(vec_cross(d, vec_sub(v[i], v[0]))) > 1e-9 * vec_norm2(d))
+            return false;
+    return true;
+}
+
+/* A point that the closed segments ab and cd, which meet, share. */
+static Vec2 meeting_point(Vec2 a, Vec2 b, Vec2 c, Vec2 d)
+{
+    Vec2 ab = vec_sub(b, a), cd = vec_sub(d, c);
+    double turn = vec_cross(ab, cd);
+    if (fabs(turn) > 1e-12 * sqrt(vec_norm2(ab) * vec_norm2(cd))) {
+        double t = vec_cross(vec_sub(c, a), cd) / turn;
+        return t <= 0.0 ? a : t >= 1.0 ? b : vec_lerp(a, b, t);
+    }
+    /* On one line: an end of one that lies on the other, d before c, which may be b. */
+    return segment_dist2(a, b, d) <= segment_dist2(c, d, a) ? d : a;
+}
+
+/* `toothed`: without teeth the margin was simple. */
+static bool check_simple(const Maker *m, bool toothed, GError **error)
+{
+    if (m->margin->len < 3 || is_flat(m))
         return fail_shape(error, "the path encloses no area");
     Polygon *p = polygon_new(points(m), m->margin->len);
     uint32_t i, j;
-    bool crosses = polygon_crossing(p, &i, &j);
-    if (crosses) {
-        char *at = user_text(m, vec_lerp(p->v[i], p->v[(i + 1) % p->n], 0.5));
-        fail_shape(error, "the margin crosses or touches itself near %s%s", at, hint);
+    bool good = !polygon_crossing(p, &i, &j);
+    double wide = p->box.x1 - p->box.x0, high = p->box.y1 - p->box.y0, size = sqrt(wide * wide + high * high);
+    if (!good) {
+        char *at = user_text(m, meeting_point(p->v[i], p->v[(i + 1) % p->n], p->v[j], p->v[(j + 1) % p->n]));
+        fail_shape(error, toothed ? "the teeth run into each other or the blade near %s; teeth_amplitude or teeth_count must be lower"
+                                  : "the margin crosses or touches itself near %s", at);
         g_free(at);
+    } else if (p->area < thinnest * size * size) {
+        char width[G_ASCII_DTOSTR_BUF_SIZE];
+        fail_shape(error, "the path is a sliver, on average %s times as wide as long; a blade is at least %g times as wide",
+                   g_ascii_formatd(width, sizeof width, "%.2g", p->area / (size * size)), thinnest);
+        good = false;
     }
     polygon_free(p);
-    return !crosses;
+    return good;
 }
 
 /* --- teeth --- */
@@ -374,14 +410,20 @@ static bool make_margin(Maker *m, GError **error)
     if (m->def->mirror)
         mirror_margin(m);
     turn_margin(m);
-    if (!check_simple(m, "", error) || !place_base_tip(m, error))
+    if (!check_simple(m, false, error) || !place_base_tip(m, error))
         return false;
     if (m->def->n_waves)
         add_teeth(m);
-    return check_simple(m, m->def->n_waves ? "; teeth must be lower or fewer there" : "", error);
+    return check_simple(m, m->def->n_waves > 0, error);
 }
 
 Polygon *outline_new(const OutlineDef *def, GError **error)
+{
+    Vec2 base, tip;
+    return outline_new_from(def, &base, &tip, error);
+}
+
+Polygon *outline_new_from(const OutlineDef *def, Vec2 *base, Vec2 *tip, GError **error)
 {
     Maker m = {.def = def};
     Polygon *p = NULL;
@@ -389,6 +431,8 @@ Polygon *outline_new(const OutlineDef *def, GError **error)
         p = polygon_new(points(&m), m.margin->len);
     else
         g_prefix_error(error, "%s: ", def->where ? def->where : "outline");
+    *base = m.base;
+    *tip = m.tip;
     svgshape_clear(&m.shape);
     if (m.margin)
         g_array_unref(m.margin);

@@ -12,7 +12,7 @@
 typedef enum {
     OUTLINE_ERROR_READ,      /* the file can't be read */
     OUTLINE_ERROR_SYNTAX,    /* not a path, not SVG */
-    OUTLINE_ERROR_SHAPE,     /* self-crossing, empty, base and tip coincide, … */
+    OUTLINE_ERROR_SHAPE,     /* self-crossing, empty, a sliver, base and tip coincide, … */
 } OutlineError;
 #define OUTLINE_ERROR outline_error_quark()
 GQuark outline_error_quark(void);
@@ -40,13 +40,17 @@ typedef struct {
 
 OutlineDef outline_def_default(void);
 
-/* Reads the path (or the file: the element with id "outline", else the largest closed path; circles or ellipses with
- * ids "base" and "tip" mark those points), flattens the curves, adds the teeth and moves the result to leaf
+/* Reads the path (or the file, as svgfile_read does: the shape called "outline", else the largest closed path; circles or
+ * ellipses called "base" and "tip" mark those points), flattens the curves, adds the teeth and moves the result to leaf
  * coordinates. Without marks the base is the first point of the path and the tip the vertex farthest from it (of a half
  * that is mirrored, its last point). The base may lie on the margin or inside the blade (peltate); nearer to the margin
  * than `flatness` or 1e-6 it is on it and becomes vertex 0, and so does a tip there become a vertex. Several subpaths
- * are an error. Returns NULL and sets `error`, which names `where`, for a shape that is empty, self-crossing or has
- * base = tip. Uses + − × ÷ √ only, so the polygon has the same bits everywhere. O(n log n) expected. */
+ * are an error. Returns NULL and sets `error`, which names `where`, for a shape that is empty, crosses itself (it says
+ * where), is a sliver (its mean width below a thousandth of its size) or has base = tip. Uses + − × ÷ √ only, so the
+ * polygon has the same bits everywhere. O(n log n) expected. */
 Polygon *outline_new(const OutlineDef *def, GError **error);
+
+/* The same; *base and *tip receive where 0,0 and 0,1 were in the units of path or file, y up. */
+Polygon *outline_new_from(const OutlineDef *def, Vec2 *base, Vec2 *tip, GError **error);
 
 #endif

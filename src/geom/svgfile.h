@@ -13,9 +13,11 @@ typedef struct {
     Vec2 base, tip;
 } SvgShape;
 
-/* Reads the path with id "outline", else the closed path of largest area outside of definitions (the first of equals),
- * and the centres of the circles or ellipses with ids "base" and "tip". viewBox, units and styles are ignored; elements
- * of other namespaces are skipped. False with OUTLINE_ERROR_READ or _SYNTAX, naming file, line and element. */
+/* Reads the shape that is called "outline", by its id or its label in Inkscape; else the closed path or polygon of largest
+ * area outside of definitions (the first of equals), and without any the largest rectangle, circle or ellipse, which may
+ * be a page's background. Also the centres of the circles or ellipses that are called "base" and "tip". viewBox, units
+ * and styles are ignored; elements of other namespaces are skipped, and so are labels of groups and layers. False with
+ * OUTLINE_ERROR_READ or _SYNTAX, naming file, line and element. */
 bool svgfile_read(const char *file, SvgShape *out, GError **error);
 void svgshape_clear(SvgShape *shape);
 

@@ -172,20 +172,86 @@ static bool read_command(SvgScan *s, Pen *pen, GError **error)
     return true;
 }
 
-SvgPath *svgpath_parse(const char *data, GError **error)
+static Pen pen_new(void)
 {
     SvgPath *path = g_new0(SvgPath, 1);
     path->curves = g_array_new(FALSE, FALSE, sizeof(Curve));
     path->subpaths = g_array_new(FALSE, FALSE, sizeof(Subpath));
+    return (Pen){.path = path, .fresh = true};
+}
+
+SvgPath *svgpath_parse(const char *data, GError **error)
+{
     SvgScan scan = {data, data};
-    Pen pen = {.path = path, .fresh = true};
+    Pen pen = pen_new();
     for (svgscan_space(&scan); *scan.at; svgscan_space(&scan)) {
         if (!read_command(&scan, &pen, error)) {
-            svgpath_free(path);
+            svgpath_free(pen.path);
             return NULL;
         }
     }
-    return path;
+    return pen.path;
+}
+
+/* --- other shapes --- */
+
+static void pen_round(Pen *pen, double rx, double ry, Vec2 to) { pen_arc(pen, (double[7]){rx, ry, 0.0, 0.0, 1.0}, to); }
+
+SvgPath *svgpath_ellipse(Vec2 centre, double rx, double ry)
+{
+    Pen pen = pen_new();
+    if (rx > 0.0 && ry > 0.0) {
+        Vec2 low = vec2(centre.x, centre.y + ry), high = vec2(centre.x, centre.y - ry);
+        pen_move(&pen, low);
+        pen_round(&pen, rx, ry, high);
+        pen_round(&pen, rx, ry, low);
+        pen_close(&pen);
+    }
+    return pen.path;
+}
+
+SvgPath *svgpath_rectangle(Vec2 corner, double width, double height, double rx, double ry)
+{
+    Pen pen = pen_new();
+    if (!(width > 0.0 && height > 0.0))
+        return pen.path;
+    double x0 = corner.x, y0 = corner.y, x1 = x0 + width, y1 = y0 + height;
+    bool rounded = rx > 0.0 && ry > 0.0;
+    rx = !rounded ? 0.0 : rx < 0.5 * width ? rx : 0.5 * width;
+    ry = !rounded ? 0.0 : ry < 0.5 * height ? ry : 0.5 * height;
+    const Vec2 from[] = {{x0 + rx, y0}, {x1, y0 + ry}, {x1 - rx, y1}, {x0, y1 - ry}};
+    const Vec2 to[] = {{x1 - rx, y0}, {x1, y1 - ry}, {x0 + rx, y1}, {x0, y0 + ry}};
+    pen_move(&pen, from[0]);
+    for (int side = 0; side < 4; side++) {
+        if (vec_dist2(from[side], to[side]) > 0.0)
+            pen_line(&pen, to[side]);
+        if (rounded)
+            pen_round(&pen, rx, ry, from[(side + 1) % 4]);
+    }
+    pen_close(&pen);
+    return pen.path;
+}
+
+SvgPath *svgpath_points(const char *data, bool closed, GError **error)
+{
+    SvgScan scan = {data, data};
+    Pen pen = pen_new();
+    svgscan_space(&scan);
+    for (bool first = true; *scan.at; first = false) {
+        Vec2 p;
+        if (!svgscan_number(&scan, &p.x, error) || (svgscan_comma(&scan), !svgscan_number(&scan, &p.y, error))) {
+            svgpath_free(pen.path);
+            return NULL;
+        }
+        if (first)
+            pen_move(&pen, p);
+        else
+            pen_line(&pen, p);
+        svgscan_comma(&scan);
+    }
+    if (closed)
+        pen_close(&pen);
+    return pen.path;
 }
 
 void svgpath_free(SvgPath *path)

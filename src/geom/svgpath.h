@@ -22,6 +22,13 @@ typedef struct {
 SvgPath *svgpath_parse(const char *data, GError **error);
 void svgpath_free(SvgPath *path);
 
+/* The other shapes of SVG 1.1, 9, as paths. An ellipse begins and ends at its point of largest y, a drawing's lowest,
+ * rather than to the right as SVG has it: a leaf drawn upright is attached there. Of a rectangle that is not rounded rx
+ * or ry is 0. Points are read from "x,y x,y …"; NULL with OUTLINE_ERROR_SYNTAX for anything else. */
+SvgPath *svgpath_ellipse(Vec2 centre, double rx, double ry);
+SvgPath *svgpath_rectangle(Vec2 corner, double width, double height, double rx, double ry);
+SvgPath *svgpath_points(const char *data, bool closed, GError **error);
+
 /* A box that holds all curves of one subpath: that of its control points. */
 Box2 svgpath_box(const SvgPath *path, guint subpath);
 

@@ -3,6 +3,7 @@
 #define LIB_LEAF_H
 
 #include "image/paint.h"
+#include "lib/ground.h"
 #include "param/params.h"
 #include "sim/network.h"
 #include "sim/simulation.h"
@@ -16,6 +17,7 @@ struct VenLeaf {
     Params *params;
     uint64_t seed;
     unsigned threads;
+    Ground *ground; /* NULL for a network that was read without a scan */
     Network *net;
     SimulationCounts counts;
     double length;  /* segments, base to tip, at this step */

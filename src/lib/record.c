@@ -107,6 +107,41 @@ static void parameters(GString *s, const Params *p)
     g_string_append(s, "\n    }\n  },\n");
 }
 
+/* What a scan gave, in pixels of it. */
+static void scan_facts(GString *s, const Ground *g)
+{
+    static const char *const base[] = {"given", "petiole", "symmetry"};
+    Vec2 from = affine_apply(&g->to_scan, vec2(0.0, 0.0)), to = affine_apply(&g->to_scan, vec2(0.0, 1.0));
+    g_string_append_printf(s, "  \"scan\": {\n    \"width\": %u,\n    \"height\": %u,\n", g->scan->width, g->scan->height);
+    number(s, "mm_per_pixel", g->scan->mm_per_pixel, ",\n");
+    if (g->profile) {
+        key(s, "    ", "channel");
+        export_json_string(s, channel_name(g->threshold.channel));
+        g_string_append(s, ",\n");
+        number(s, "threshold", g->threshold.level, ",\n");
+        number(s, "separability", g->threshold.separability, ",\n");
+        number(s, "area", g->profile->area, ",\n");
+        number(s, "perimeter", g->profile->perimeter, ",\n");
+        number(s, "symmetry", g->profile->symmetry, ",\n");
+        g_string_append_printf(s, "    \"nodes_traced\": %u,\n    \"base_from\": \"%s\",\n", g->profile->nodes, base[g->profile->base_from]);
+    }
+    if (g->fang) {
+        g_string_append_printf(s, "    \"characteristic_points\": %u,\n    \"curves\": %u,\n    \"nodes_traced\": %u,\n",
+                               g->fang->corners->len, g->fang->fit->n, g->fang->contour->n);
+        number(s, "area", g->fang->contour->area, ",\n");
+        number(s, "deviation_largest", g->fang->fit->largest, ",\n");
+        number(s, "deviation_mean", g->fang->fit->mean, ",\n");
+    }
+    g_string_append_printf(s, "    \"nodes\": %u,\n    \"veins\": %u,\n    \"veins_from\": \"%s\",\n", g->outline->n,
+                           g->drawing ? g->drawing->n : 0, !g->drawing ? "none" : g->found ? "scan" : "drawing");
+    key(s, "    ", "base");
+    list(s, &from.x, 2, FALSE);
+    g_string_append(s, ",\n");
+    key(s, "    ", "tip");
+    list(s, &to.x, 2, FALSE);
+    g_string_append(s, "\n  },\n");
+}
+
 /* The record without its last brace. */
 static GString *begin_record(const VenLeaf *leaf)
 {
@@ -117,6 +152,8 @@ static GString *begin_record(const VenLeaf *leaf)
     export_json_string(s, params_text(leaf->params, PARAM_LEAF_TITLE));
     g_string_append_printf(s, ",\n  \"seed\": %" G_GUINT64_FORMAT ",\n", (guint64)leaf->seed);
     parameters(s, leaf->params);
+    if (leaf->ground && leaf->ground->scan)
+        scan_facts(s, leaf->ground);
     g_string_append(s, "  \"leaf\": {\n");
     number(s, "length", leaf->length, ",\n");
     number(s, "width", net->margin->box.x1 - net->margin->box.x0, ",\n");

@@ -6,6 +6,19 @@
 
 G_DEFINE_QUARK(settings-error-quark, settings_error)
 
+/* Sets an error that begins with the place where a parameter was given; always FALSE. */
+static G_GNUC_PRINTF(4, 5) gboolean conflict(GError **error, const Params *p, ParamId id, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *place = params_place(p, id), *what = g_strdup_vprintf(format, args);
+    va_end(args);
+    g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s%s", place, what);
+    g_free(what);
+    g_free(place);
+    return FALSE;
+}
+
 /* ---- outline ---- */
 
 static gboolean one_point(const Params *p, ParamId id, bool *has, Vec2 *at, GError **error)
@@ -13,11 +26,8 @@ static gboolean one_point(const Params *p, ParamId id, bool *has, Vec2 *at, GErr
     uint32_t n;
     const double *v = params_list(p, id, &n);
     *has = n == 1;
-    if (n > 1) {
-        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [%s] %s holds %u points; it must be one", params_origin(p, id),
-                    param_info(id)->section, param_info(id)->key, n);
-        return FALSE;
-    }
+    if (n > 1)
+        return conflict(error, p, id, " holds %u points; it must be one", n);
     if (n == 1)
         *at = vec2(v[0], v[1]);
     return TRUE;
@@ -28,12 +38,10 @@ static gboolean waves(const Params *p, OutlineDef *def, GError **error)
     uint32_t n_amplitude, n_count;
     const double *amplitude = params_list(p, PARAM_OUTLINE_TEETH_AMPLITUDE, &n_amplitude);
     const double *count = params_list(p, PARAM_OUTLINE_TEETH_COUNT, &n_count);
-    if (n_amplitude != n_count) {
-        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
-                    "%s: [outline] teeth_amplitude has %u numbers and teeth_count has %u; there must be as many, one for each waveform",
-                    params_origin(p, PARAM_OUTLINE_TEETH_AMPLITUDE), n_amplitude, n_count);
-        return FALSE;
-    }
+    if (n_amplitude != n_count)
+        return conflict(error, p, PARAM_OUTLINE_TEETH_AMPLITUDE,
+                        " has %u number%s and teeth_count has %u; there must be as many, one for each waveform", n_amplitude,
+                        n_amplitude == 1 ? "" : "s", n_count);
     OutlineWave *wave = g_new(OutlineWave, n_count);
     for (uint32_t i = 0; i < n_count; i++)
         wave[i] = (OutlineWave){amplitude[i], count[i]};
@@ -42,13 +50,12 @@ static gboolean waves(const Params *p, OutlineDef *def, GError **error)
     return TRUE;
 }
 
-Polygon *settings_outline(const Params *p, GError **error)
+Polygon *settings_outline(const Params *p, Vec2 *base, Vec2 *tip, GError **error)
 {
     OutlineDef def = outline_def_default();
     const char *path = params_text(p, PARAM_OUTLINE_PATH), *file = params_text(p, PARAM_OUTLINE_FILE);
     if (*path && *file) {
-        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [outline] path and file are both given; a leaf has one margin",
-                    params_origin(p, PARAM_OUTLINE_FILE));
+        conflict(error, p, PARAM_OUTLINE_FILE, " and path are both given; a leaf has one margin");
         return NULL;
     }
     char *where = NULL;
@@ -57,8 +64,7 @@ Polygon *settings_outline(const Params *p, GError **error)
         def.path = *path ? path : NULL;
         def.file = *file ? file : NULL;
         def.mirror = params_switch(p, PARAM_OUTLINE_MIRROR);
-        where = g_strdup_printf("%s: [outline] %s", params_origin(p, id), param_info(id)->key);
-        def.where = where;
+        def.where = where = params_place(p, id);
     }
     def.flatness = params_number(p, PARAM_OUTLINE_FLATNESS);
     def.tooth_skew = params_number(p, PARAM_OUTLINE_TEETH_SKEW);
@@ -67,7 +73,7 @@ Polygon *settings_outline(const Params *p, GError **error)
     Polygon *outline = NULL;
     if (one_point(p, PARAM_OUTLINE_BASE, &def.has_base, &def.base, error) &&
         one_point(p, PARAM_OUTLINE_TIP, &def.has_tip, &def.tip, error) && waves(p, &def, error))
-        outline = outline_new(&def, error);
+        outline = outline_new_from(&def, base, tip, error);
     g_free((gpointer)def.waves);
     g_free(where);
     return outline;
@@ -104,6 +110,55 @@ static Vec2 *seed_nodes(const Params *p, uint32_t *n)
     return seed;
 }
 
+static int compare_points(gconstpointer a, gconstpointer b, gpointer user)
+{
+    const Vec2 *p = a, *q = b;
+    return p->x != q->x ? (p->x > q->x) - (p->x < q->x) : (p->y > q->y) - (p->y < q->y);
+}
+
+/* A node for itself that nothing leads to is what two first nodes at one place would give. */
+static gboolean check_seeds(const Params *p, const SimulationDef *def, GError **error)
+{
+    uint32_t n_points, again = 1;
+    params_list(p, PARAM_VEINS_SEEDS, &n_points);
+    int64_t row = params_integer(p, PARAM_VEINS_SEED_ROW);
+    if (row > 1 && n_points < 2)
+        return conflict(error, p, PARAM_VEINS_SEED_ROW,
+                        " = %" G_GINT64_FORMAT " needs a line through two points or more; veins.seeds has %u (0 switches the row off)", row,
+                        n_points);
+    if (def->n_seeds < 2)
+        return TRUE;
+    Vec2 *seed = g_memdup2(def->seeds, sizeof(Vec2) * def->n_seeds);
+    g_qsort_with_data(seed, (gint)def->n_seeds, sizeof(Vec2), compare_points, NULL);
+    while (again < def->n_seeds && compare_points(&seed[again], &seed[again - 1], NULL) != 0)
+        again++;
+    gboolean good = again == def->n_seeds;
+    if (!good) {
+        char x[G_ASCII_DTOSTR_BUF_SIZE], y[G_ASCII_DTOSTR_BUF_SIZE];
+        conflict(error, p, PARAM_VEINS_SEEDS, ": two of the first nodes are at %s,%s; each must have a place of its own",
+                 g_ascii_formatd(x, sizeof x, "%.6g", seed[again].x), g_ascii_formatd(y, sizeof y, "%.6g", seed[again].y));
+    }
+    g_free(seed);
+    return good;
+}
+
+static gboolean read_sources(const Params *p, SimulationDef *def, GError **error)
+{
+    const char *file = params_text(p, PARAM_SOURCES_FILE);
+    if (def->placement != PLACEMENT_LIST && *file)
+        return conflict(error, p, PARAM_SOURCES_FILE, " is given, but placement is %s; it must be list, or be left out",
+                        def->placement == PLACEMENT_DARTS ? "darts" : "margin");
+    if (def->placement != PLACEMENT_LIST)
+        return TRUE;
+    if (!*file)
+        return conflict(error, p, PARAM_SOURCES_PLACEMENT, " = list needs sources.file");
+    ListedSource *list;
+    if (!source_list_read(file, &list, &def->n_list, error))
+        return FALSE;
+    def->list = list;
+    return TRUE;
+}
+
 static GrowthDef growth(const Params *p)
 {
     GrowthDef g = {.kind = (GrowthKind)params_choice(p, PARAM_GROWTH_KIND),
@@ -135,17 +190,7 @@ gboolean settings_simulation(const Params *p, const Polygon *leaf, uint64_t seed
     def->seed = seed;
     def->threads = threads;
     def->seeds = seed_nodes(p, &def->n_seeds);
-    const char *file = params_text(p, PARAM_SOURCES_FILE);
-    gboolean ok = TRUE;
-    if (def->placement == PLACEMENT_LIST && !*file) {
-        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [sources] placement = list needs sources.file",
-                    params_origin(p, PARAM_SOURCES_PLACEMENT));
-        ok = FALSE;
-    } else if (def->placement == PLACEMENT_LIST) {
-        ListedSource *list;
-        ok = source_list_read(file, &list, &def->n_list, error);
-        def->list = ok ? list : NULL;
-    }
+    gboolean ok = check_seeds(p, def, error) && read_sources(p, def, error);
     if (!ok)
         settings_simulation_clear(def);
     return ok;
@@ -223,10 +268,8 @@ gboolean settings_maps(const Params *p, gboolean *wanted, GError **error)
             wanted[id] = TRUE;
         } else {
             char *known = known_maps(*w);
-            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [texture] maps: no map is called '%s'; %s",
-                        params_origin(p, PARAM_TEXTURE_MAPS), *w, known);
+            ok = conflict(error, p, PARAM_TEXTURE_MAPS, ": no map is called '%s'; %s", *w, known);
             g_free(known);
-            ok = FALSE;
         }
     }
     g_strfreev(word);

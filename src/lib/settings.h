@@ -7,6 +7,10 @@
 #include "geom/outline.h"
 #include "image/paint.h"
 #include "param/params.h"
+#include "scan/fang.h"
+#include "scan/found.h"
+#include "scan/profile.h"
+#include "sim/lsystem.h"
 #include "sim/simulation.h"
 #include "sim/width.h"
 
@@ -17,8 +21,17 @@ typedef enum {
 #define SETTINGS_ERROR settings_error_quark()
 GQuark settings_error_quark(void);
 
-/* The outline that [outline] asks for, in leaf coordinates. */
-Polygon *settings_outline(const Params *p, GError **error);
+/* The outline that [outline] asks for, in leaf coordinates; *base and *tip receive where 0,0 and 0,1 were in the units of the path or file, y up. */
+Polygon *settings_outline(const Params *p, Vec2 *base, Vec2 *tip, GError **error);
+
+/* [scan] of an image `height` pixels high. */
+ProfileDef settings_profile(const Params *p, uint32_t height);
+FangDef settings_fang(const Params *p, uint32_t height);
+FoundDef settings_found(const Params *p);
+
+/* [lsystem]; free with settings_lsystem_clear. */
+LSystemDef settings_lsystem(const Params *p, uint64_t seed);
+void settings_lsystem_clear(const Params *p, LSystemDef *def);
 
 /* The simulation that the parameters ask for, on outline `leaf`, which must outlive it. Free with settings_simulation_clear. */
 gboolean settings_simulation(const Params *p, const Polygon *leaf, uint64_t seed, unsigned threads, SimulationDef *def, GError **error);

@@ -50,16 +50,19 @@ void ven_params_free(VenParams *params)
 
 /* ---- growing ---- */
 
-static VenLeaf *leaf_new(const Params *params, const SimulationDef *def, const Simulation *sim)
+static VenLeaf *leaf_new(const Params *params, Ground *ground, const SimulationDef *def, const Simulation *sim)
 {
     const Blade *blade = simulation_blade(sim);
     WidthDef widths = settings_widths(params);
     VenLeaf *leaf = g_new0(VenLeaf, 1);
     leaf->params = params_copy(params);
+    leaf->ground = ground_ref(ground);
     leaf->seed = def->seed;
     leaf->threads = def->threads;
     leaf->net = simulation_network(sim);
     network_assign_widths(leaf->net, &widths);
+    if (def->given)
+        network_keep_drawn(leaf->net, &widths, def->given, simulation_given(sim));
     leaf->counts = simulation_counts(sim);
     leaf->length = blade->length;
     leaf->growth_steps = blade->last_step;
@@ -71,6 +74,7 @@ void ven_leaf_free(VenLeaf *leaf)
 {
     if (!leaf)
         return;
+    ground_unref(leaf->ground);
     network_free(leaf->net);
     params_free(leaf->params);
     g_free(leaf);
@@ -79,6 +83,7 @@ void ven_leaf_free(VenLeaf *leaf)
 /* One growing of the leaf, of which a run has two when snapshots are asked for: the first one learns the scale. */
 typedef struct {
     const Params *params;
+    Ground *ground;
     const SimulationDef *def;
     const VenOptions *options;  /* may be NULL */
     double from, to;            /* the part of the run that it is, for the progress */
@@ -97,7 +102,7 @@ static gboolean report(const Pass *pass, const Simulation *sim)
                      .rehearsal = pass->options->snapshot_every && !pass->snapshot_every};
     VenLeaf *snapshot = NULL;
     if (pass->snapshot_every && (c.step % pass->snapshot_every == 0 || c.end != END_RUNNING)) {
-        p.leaf = snapshot = leaf_new(pass->params, pass->def, sim);
+        p.leaf = snapshot = leaf_new(pass->params, pass->ground, pass->def, sim);
         snapshot->reference = pass->reference;
     }
     gboolean go_on = pass->options->progress(&p, pass->options->user);
@@ -110,7 +115,7 @@ static VenLeaf *run(const Pass *pass, GError **error)
     Simulation *sim = simulation_new(pass->def, error);
     if (!sim)
         return NULL;
-    gboolean more = TRUE, stopped = FALSE;
+    gboolean more = TRUE, stopped = pass->snapshot_every && !report(pass, sim); /* a snapshot of the first nodes */
     while (more && !stopped) {
         more = simulation_step(sim);
         stopped = !report(pass, sim);
@@ -119,23 +124,101 @@ static VenLeaf *run(const Pass *pass, GError **error)
     if (stopped)
         g_set_error(error, G_IO_ERROR, G_IO_ERROR_CANCELLED, "stopped at step %u", simulation_counts(sim).step);
     else
-        leaf = leaf_new(pass->params, pass->def, sim);
+        leaf = leaf_new(pass->params, pass->ground, pass->def, sim);
     simulation_free(sim);
     return leaf;
 }
 
-static VenLeaf *run_all(const Params *params, const SimulationDef *def, const VenOptions *options, GError **error)
+static VenLeaf *run_all(const Params *params, Ground *ground, const SimulationDef *def, const VenOptions *options, GError **error)
 {
-    Pass pass = {.params = params, .def = def, .options = options, .to = 1.0};
+    Pass pass = {.params = params, .ground = ground, .def = def, .options = options, .to = 1.0};
     if (!options || !options->snapshot_every || !options->progress)
         return run(&pass, error);
     pass.to = 0.3;
     VenLeaf *first = run(&pass, error), *leaf = NULL;
     if (first) {
-        pass = (Pass){params, def, options, 0.3, 1.0, options->snapshot_every, first->net};
+        pass = (Pass){params, ground, def, options, 0.3, 1.0, options->snapshot_every, first->net};
         leaf = run(&pass, error);
     }
     ven_leaf_free(first);
+    return leaf;
+}
+
+/* ---- veins that do not grow ---- */
+
+/* Of a network in segments that is the caller's no more, on a leaf of that length. */
+static VenLeaf *leaf_of(const Params *p, Ground *ground, uint64_t seed, unsigned threads, Network *net, double length, EndReason end)
+{
+    VenLeaf *leaf = g_new0(VenLeaf, 1);
+    leaf->params = params_copy(p);
+    leaf->ground = ground_ref(ground);
+    leaf->seed = seed;
+    leaf->threads = threads;
+    leaf->net = net;
+    leaf->counts = (SimulationCounts){.step = net->n_steps, .nodes = net->n_nodes, .end = end};
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        leaf->counts.joins += net->kind[e] == EDGE_ANASTOMOSIS;
+    leaf->length = length;
+    leaf->stage = net->margin->box;
+    return leaf;
+}
+
+/* A blade in which no vein was drawn or found. */
+static Network *bare(const Polygon *outline, double length)
+{
+    Network *net = network_new(1, 0);
+    net->margin = polygon_scaled(outline, length);
+    return net;
+}
+
+static gboolean drawn_network(const Params *p, const Ground *g, double length, Network **net, GError **error)
+{
+    DrawingDef def = drawing_def_default();
+    *net = NULL;
+    if (!g->drawing || g->drawing->n == 0)
+        return TRUE;
+    def.length = length;
+    def.widths = settings_widths(p);
+    def.where = params_text(p, g->found ? PARAM_SCAN_FILE : PARAM_VEINS_DRAWING);
+    *net = drawing_network(g->drawing, g->outline, &def, error);
+    return *net != NULL;
+}
+
+static Network *lsystem_veins(const Params *p, const Ground *g, double length, uint64_t seed, GError **error)
+{
+    LSystemDef def = settings_lsystem(p, seed);
+    Network *net = lsystem_network(&def, g->outline, length, NULL, error);
+    if (!net)
+        g_prefix_error(error, "[lsystem]: ");
+    settings_lsystem_clear(p, &def);
+    return net;
+}
+
+/* ---- the way to a leaf ---- */
+
+enum { ORIGIN_GROWN, ORIGIN_DRAWN, ORIGIN_LSYSTEM };
+
+static VenLeaf *grow_in(const Params *p, Ground *ground, SimulationDef *def, const VenOptions *options, GError **error)
+{
+    double length = simulation_final_length(def, error);
+    int origin = params_choice(p, PARAM_VEINS_ORIGIN);
+    Network *net = NULL;
+    if (length <= 0.0)
+        return NULL;
+    if (origin == ORIGIN_LSYSTEM) {
+        net = lsystem_veins(p, ground, length, def->seed, error);
+        return net ? leaf_of(p, ground, def->seed, def->threads, net, length, END_LSYSTEM) : NULL;
+    }
+    if (!drawn_network(p, ground, length, &net, error))
+        return NULL;
+    if (origin == ORIGIN_DRAWN)
+        return leaf_of(p, ground, def->seed, def->threads, net ? net : bare(ground->outline, length), length, END_DRAWN);
+    def->given = net;
+    def->given_length = length;
+    if (net && !params_is_given(p, PARAM_VEINS_SEEDS))
+        def->n_seeds = 0; /* the drawn veins begin somewhere */
+    VenLeaf *leaf = run_all(p, ground, def, options, error);
+    network_free(net);
     return leaf;
 }
 
@@ -145,14 +228,14 @@ VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *opti
     gboolean maps[MAP_COUNT];
     if (!settings_maps(p, maps, error)) /* before the work, not after it */
         return NULL;
-    Polygon *outline = settings_outline(p, error);
+    Ground *ground = ground_new(p, params_choice(p, PARAM_VEINS_ORIGIN) != ORIGIN_LSYSTEM, error);
     SimulationDef def;
     VenLeaf *leaf = NULL;
-    if (outline && settings_simulation(p, outline, seed, options ? options->threads : 0, &def, error)) {
-        leaf = run_all(p, &def, options, error);
+    if (ground && settings_simulation(p, ground->outline, seed, options ? options->threads : 0, &def, error)) {
+        leaf = grow_in(p, ground, &def, options, error);
         settings_simulation_clear(&def);
     }
-    polygon_free(outline);
+    ground_unref(ground);
     return leaf;
 }
 
@@ -166,7 +249,8 @@ static Polygon *given_margin(const Params *p, const char *path, GError **error)
                     "%s: the graph has no attribute 'margin' (x,y x,y … in segments), nor do parameters give an [outline]", path);
         return NULL;
     }
-    Polygon *leaf = settings_outline(p, error);
+    Vec2 base, tip;
+    Polygon *leaf = settings_outline(p, &base, &tip, error);
     if (!leaf)
         return NULL;
     Polygon *margin = polygon_scaled(leaf, params_number(p, PARAM_GROWTH_FINAL_LENGTH));
@@ -185,15 +269,14 @@ VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed,
         network_free(net);
         return NULL;
     }
-    VenLeaf *leaf = g_new0(VenLeaf, 1);
-    leaf->params = params_copy(p);
-    leaf->seed = seed;
-    leaf->net = net;
-    leaf->counts = (SimulationCounts){.step = net->n_steps, .nodes = net->n_nodes, .end = END_LOADED};
-    for (uint32_t e = 0; e < net->n_edges; e++)
-        leaf->counts.joins += net->kind[e] == EDGE_ANASTOMOSIS;
-    leaf->length = net->margin->box.y1; /* the base is at the origin, the tip along +y */
-    leaf->stage = net->margin->box;
+    Ground *ground = NULL;
+    if (*params_text(p, PARAM_SCAN_FILE) && !(ground = ground_new(p, false, error))) { /* for its colours */
+        network_free(net);
+        return NULL;
+    }
+    /* the base is at the origin, the tip along +y */
+    VenLeaf *leaf = leaf_of(p, ground, seed, 0, net, net->margin->box.y1, END_LOADED);
+    ground_unref(ground);
     return leaf;
 }
 

@@ -10,11 +10,14 @@ typedef struct {
     Value value;
     char *path;   /* FILE, openable */
     char *origin; /* NULL: default */
+    bool over;    /* given by an override, not by a file */
 } Entry;
 
 struct Params {
     Entry entry[PARAM_COUNT];
 };
+
+enum { PLACED_BY_LIST = 2 }; /* among the choices of sources.placement */
 
 G_DEFINE_QUARK(param-error-quark, param_error)
 
@@ -61,6 +64,7 @@ Params *params_copy(const Params *p)
         copy->entry[i].value = value_copy(&table[i], &p->entry[i].value);
         copy->entry[i].path = g_strdup(p->entry[i].path);
         copy->entry[i].origin = g_strdup(p->entry[i].origin);
+        copy->entry[i].over = p->entry[i].over;
     }
     return copy;
 }
@@ -93,6 +97,9 @@ char *param_quote(const char *text)
     return g_string_free(s, FALSE);
 }
 
+/* Whether an origin is an option that stands for one parameter, as --size does. */
+static bool is_option(const char *origin) { return origin && g_str_has_prefix(origin, "--") && strcmp(origin, "--set") != 0; }
+
 static void refuse(ParamId id, const char *value, const Place *place, GError **error)
 {
     const ParamInfo *info = &table[id];
@@ -101,6 +108,8 @@ static void refuse(ParamId id, const char *value, const Place *place, GError **e
     GString *s = g_string_new(NULL);
     if (place->line)
         g_string_append_printf(s, "%s:%u: [%s] %s = %s", origin, place->line, info->section, info->key, found);
+    else if (is_option(origin))
+        g_string_append_printf(s, "%s %s", origin, found);
     else
         g_string_append_printf(s, "%s%s%s.%s=%s", origin ? origin : "", origin ? " " : "", info->section, info->key,
                                found);
@@ -111,6 +120,37 @@ static void refuse(ParamId id, const char *value, const Place *place, GError **e
     g_free(hint);
     g_free(allowed);
     g_free(found);
+}
+
+/* How much a value has been asked for: by nobody, by a file, by an override. */
+static int strength(const Entry *e) { return !e->origin ? 0 : e->over ? 2 : 1; }
+
+/* Gives way: parameter `id` takes another value when `to` has been asked for more strongly. */
+static void yield(Params *p, ParamId id, ParamId to, const char *value)
+{
+    Entry *e = &p->entry[id];
+    if (strength(e) >= strength(&p->entry[to]))
+        return;
+    value_clear(&e->value);
+    bool good = value_parse(&table[id], value, &e->value);
+    g_assert(good);
+    g_free(e->path);
+    e->path = g_strdup(e->value.text);
+}
+
+/* Parameters that exclude each other: of a file's and an override the override wins, and a list of sources that is given
+ * is used. Where both are asked for equally they stay, to be refused where they are read. */
+static void settle(Params *p, ParamId given)
+{
+    const Value *v = &p->entry[given].value;
+    if (given == PARAM_OUTLINE_PATH && *v->text)
+        yield(p, PARAM_OUTLINE_FILE, given, "");
+    else if (given == PARAM_OUTLINE_FILE && *v->text)
+        yield(p, PARAM_OUTLINE_PATH, given, "");
+    else if (given == PARAM_SOURCES_FILE && *v->text)
+        yield(p, PARAM_SOURCES_PLACEMENT, given, "list");
+    else if (given == PARAM_SOURCES_PLACEMENT && v->integer != PLACED_BY_LIST)
+        yield(p, PARAM_SOURCES_FILE, given, "");
 }
 
 gboolean params_assign(Params *p, ParamId id, const char *value, const Place *place, GError **error)
@@ -126,12 +166,14 @@ gboolean params_assign(Params *p, ParamId id, const char *value, const Place *pl
     g_free(e->origin);
     e->value = parsed;
     e->origin = g_strdup(place->origin ? place->origin : "");
+    e->over = place->line == 0;
     e->path = g_strdup(parsed.text);
     if (table[id].type == TYPE_FILE && place->folder && strcmp(place->folder, ".") != 0 && *parsed.text &&
         !g_path_is_absolute(parsed.text)) {
         g_free(e->path);
         e->path = g_build_filename(place->folder, parsed.text, NULL);
     }
+    settle(p, id);
     return TRUE;
 }
 
@@ -219,6 +261,18 @@ bool params_is_given(const Params *p, ParamId id)
 const char *params_origin(const Params *p, ParamId id)
 {
     return p->entry[id].origin ? p->entry[id].origin : "default";
+}
+
+char *params_place(const Params *p, ParamId id)
+{
+    const char *origin = params_origin(p, id);
+    if (is_option(origin))
+        return g_strdup(origin);
+    char *name = g_filename_display_name(origin);
+    char *place = strcmp(origin, "--set") == 0 ? g_strdup_printf("--set %s.%s", table[id].section, table[id].key)
+                                               : g_strdup_printf("%s: [%s] %s", name, table[id].section, table[id].key);
+    g_free(name);
+    return place;
 }
 
 char *params_format(const Params *p, ParamId id)

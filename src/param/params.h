@@ -53,10 +53,13 @@ Params *params_load(const char *path, GError **error);
 /* The same from `length` bytes of text; `path` names them in messages and its folder is where FILE values start. */
 Params *params_parse(const char *text, gsize length, const char *path, GError **error);
 
-/* Sets one parameter from "section.key=value"; FILE values given so are relative to the working folder. */
+/* Sets one parameter from "section.key=value"; FILE values given so are relative to the working folder. An override of
+ * outline.path or outline.file displaces the other one if that is a file's, and so do sources.file and a sources.placement
+ * other than list. */
 gboolean params_override(Params *p, const char *assignment, GError **error);
 
-/* The same with key and value apart; `origin` names the place for messages. */
+/* The same with key and value apart; `origin` names the place for messages: "--set", or the option that was typed instead
+ * ("--size"). */
 gboolean params_set(Params *p, ParamId id, const char *value, const char *origin, GError **error);
 
 /* Values. The type must be the table's. */
@@ -71,6 +74,9 @@ const double *params_list(const Params *p, ParamId id, uint32_t *n); /* NUMBERS:
 /* Whether the value was given by a file or an override, and by which ("params/poplar.ini", "--set"). */
 bool params_is_given(const Params *p, ParamId id);
 const char *params_origin(const Params *p, ParamId id);
+
+/* Where the value was given, for messages: "params/poplar.ini: [outline] file", "--set outline.file", "--maps". Free it. */
+char *params_place(const Params *p, ParamId id);
 
 /* The value as text that reads back to the same bits (numbers in the shortest such form); free it. FILE values as they were written. */
 char *params_format(const Params *p, ParamId id);

@@ -62,7 +62,7 @@ static bool check(const Scan *s, const ProfileDef *d, GError **error)
 typedef struct {
     const Scan *scan;
     const ProfileDef *def;
-    const Threshold *threshold;
+    const Threshold *threshold; /* NULL: the mask was made otherwise */
     const Mask *mask;
     MaskBox box;
     Stalk stalk;
@@ -125,7 +125,8 @@ static Polygon *trace(Capture *c, bool stalk)
     uint8_t test = MASK_THIS | (c->def->keep_holes ? MASK_HOLE : 0) | (stalk ? 0 : MASK_STALK);
     MarchField f = {.px = c->mask->px, .width = c->mask->width, .height = c->mask->height, .test = test, .want = MASK_THIS,
                     .x0 = c->box.x0, .y0 = c->box.y0, .x1 = c->box.x1, .y1 = c->box.y1,
-                    .level = c->def->subpixel ? level_of : NULL, .user = c, .threshold = c->threshold->level};
+                    .level = c->def->subpixel && c->threshold ? level_of : NULL, .user = c,
+                    .threshold = c->threshold ? c->threshold->level : 0.0};
     MarchLoops *l = march_loops(&f, c->def->square);
     uint32_t k = march_largest(l);
     Polygon *p = NULL;
@@ -293,6 +294,35 @@ static bool capture_all(Capture *c, const GArray *parts, GPtrArray *out, GError 
     return ok;
 }
 
+/* `t` is NULL where the mask was made otherwise. */
+static GPtrArray *capture_mask(const Scan *s, const Mask *m, const Threshold *t, const ProfileDef *def, GError **error)
+{
+    if (def->close > 0.0) {
+        mask_dilate(m, MASK_LEAF, MASK_LEAF, def->close);
+        mask_erode(m, MASK_LEAF, MASK_LEAF, def->close);
+    }
+    if (def->open > 0.0) {
+        mask_erode(m, MASK_LEAF, MASK_LEAF, def->open);
+        mask_dilate(m, MASK_LEAF, MASK_LEAF, def->open);
+    }
+    GArray *parts = mask_components(m, def->least_area);
+    GPtrArray *out = g_ptr_array_new_with_free_func((GDestroyNotify)profile_free);
+    Capture c = {.scan = s, .def = def, .threshold = t, .mask = m};
+    bool ok = parts->len > 0;
+    if (!ok && t)
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: nothing is %s than %g in the %s channel but the edge of the image",
+                    t->dark ? "darker" : "lighter", t->level, channel_name(t->channel));
+    else if (!ok)
+        g_set_error_literal(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: nothing is marked but the edge of the image");
+    ok = ok && capture_all(&c, parts, out, error);
+    g_array_free(parts, TRUE);
+    if (!ok) {
+        g_ptr_array_free(out, TRUE);
+        return NULL;
+    }
+    return out;
+}
+
 GPtrArray *profile_capture(const Scan *s, const ProfileDef *def, Threshold *used, GError **error)
 {
     Threshold t;
@@ -306,27 +336,13 @@ GPtrArray *profile_capture(const Scan *s, const ProfileDef *def, Threshold *used
         return NULL;
     }
     threshold_apply(s, &t, m.px);
-    if (def->close > 0.0) {
-        mask_dilate(&m, MASK_LEAF, MASK_LEAF, def->close);
-        mask_erode(&m, MASK_LEAF, MASK_LEAF, def->close);
-    }
-    if (def->open > 0.0) {
-        mask_erode(&m, MASK_LEAF, MASK_LEAF, def->open);
-        mask_dilate(&m, MASK_LEAF, MASK_LEAF, def->open);
-    }
-    GArray *parts = mask_components(&m, def->least_area);
-    GPtrArray *out = g_ptr_array_new_with_free_func((GDestroyNotify)profile_free);
-    Capture c = {.scan = s, .def = def, .threshold = &t, .mask = &m};
-    bool ok = parts->len > 0;
-    if (!ok)
-        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: nothing is %s than %g in the %s channel but the edge of the image",
-                    t.dark ? "darker" : "lighter", t.level, channel_name(t.channel));
-    ok = ok && capture_all(&c, parts, out, error);
-    g_array_free(parts, TRUE);
+    GPtrArray *out = capture_mask(s, &m, &t, def, error);
     g_free(m.px);
-    if (!ok) {
-        g_ptr_array_free(out, TRUE);
-        return NULL;
-    }
     return out;
+}
+
+GPtrArray *profile_capture_mask(const Scan *s, const Mask *m, const ProfileDef *def, GError **error)
+{
+    g_assert(m->width == s->width && m->height == s->height && m->stride == s->width);
+    return check(s, def, error) ? capture_mask(s, m, NULL, def, error) : NULL;
 }

@@ -3,6 +3,7 @@
 #define SCAN_PROFILE_H
 
 #include "geom/polygon.h"
+#include "scan/mask.h"
 #include "scan/threshold.h"
 
 /* All lengths are in pixels and all points in y-up pixel units: the image is the box from (0, 0) to (width, height). */
@@ -50,6 +51,10 @@ typedef struct {
 /* The leaves of a scan, largest first; *used (unless NULL) receives the threshold. SCAN_ERROR_NO_LEAF when there is none, SCAN_ERROR_VALUE for settings
  * that can't be used. Holds one byte a pixel besides the scan, and some more along outlines. About 0.1 s per 10⁷ pixels and channel tried. */
 GPtrArray *profile_capture(const Scan *s, const ProfileDef *def, Threshold *used, GError **error);
+
+/* The same where the leaf's pixels are marked already, by MASK_LEAF and no other bit in a mask of the scan's size, which is changed. The
+ * threshold and `subpixel` are not used. */
+GPtrArray *profile_capture_mask(const Scan *s, const Mask *m, const ProfileDef *def, GError **error);
 void profile_free(Profile *p);
 
 #endif

@@ -204,7 +204,7 @@ def test_usage_grow():
     for bad in ("-1", "1025", "two"):
         check_refused(run("grow", "small.ini", "--threads", bad), 2, "--threads")
     for bad in ("-1", "0", "x", "4294967296"):
-        check_refused(run("grow", "small.ini", "--every", bad), 2, "--every")
+        check_refused(run("grow", "small.ini", "--every", bad), 2, f"--every {bad}: must be a whole number from 1 to 4294967295")
     check_refused(run("grow", "small.ini", "--every", "5", "--frames", "gif"), 2, "svg or maps")
     check_refused(run("grow", "small.ini", "--frames", "svg"), 2, "--every")
     check_refused(run("grow", "small.ini", "--every", "5", "--frames", "maps", "--maps", "none"), 2, "--frames maps")
@@ -243,9 +243,11 @@ def test_input_unreadable_file():
 
 
 def test_input_no_key_file():
-    check_file(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "bad.ini", "not a text file")
+    check_file(b"\x7fELF\0\0\0\rIHDR", "bad.ini", "not a text file")
     check_file(b"[leaf]\ntitle = \xff\n", "bad.ini:2", "UTF-8")
     check_file("\n" * (2 << 20), "1 MiB")
+    check_refused(run("grow", "/dev/zero"), 3, "/dev/zero: larger than 1 MiB")
+    check_refused(run("shape", "x.graphml", "--params", "/dev/zero"), 3, "/dev/zero: larger than 1 MiB")
     check_file("[veins\n", "bad.ini:1")
     check_file("[veins]\nkill distance 3\n", "bad.ini:2", "key = value")
     check_file("kill_distance = 3\n", "bad.ini:1", "section")
@@ -275,28 +277,93 @@ def test_input_values():
 def test_input_sizes():
     write("small.ini", SMALL)
     for bad in ("0", "1000000", "-5", "99999999999999999999"):
-        check_refused(run("grow", "small.ini", "--size", bad), 3, "texture.size", "from 16 to 16384")
+        check_refused(run("grow", "small.ini", "--size", bad), 3, f"venation: --size {bad}: must be a whole number from 16 to 16384")
+    check_set("texture.size=0", "venation: --set texture.size=0: must be")
 
 
 def test_input_maps():
     write("small.ini", SMALL)
-    check_refused(run("grow", "small.ini", "--maps", "base_colour"), 3, "base_colour")
+    check_refused(run("grow", "small.ini", "--maps", "base_colour"), 3, "venation: --maps: no map is called 'base_colour'")
+    check_set("texture.maps=base_colour,height", "venation: --set texture.maps: no map is called 'base_colour'")
+    write("file.ini", SMALL + "maps = opacity base_colour\n")
+    check_refused(run("grow", "file.ini"), 3, "venation: file.ini: [texture] maps: no map is called 'base_colour'")
 
 
 def test_input_outline():
     check_set("outline.file=missing.svg", "missing.svg")
-    check_set("outline.path=M0,0 L1,1 L1,0 L0,1 Z", "outline")
-    check_set("outline.path=M0,0 L1,1 L1,", "outline")
+    check_set("outline.path=M0,0 L1,1 L1,", "--set outline.path: at character")
     check_set("outline.path=zebra", "outline")
     write("outline.svg", "no drawing at all")
     check_set("outline.file=outline.svg", "outline.svg")
     write("outline.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>")
-    check_set("outline.file=outline.svg", "outline.svg")
+    check_set("outline.file=outline.svg", "outline.svg", "Path > Object to Path")
+
+
+def test_input_crossing_outline():
+    check_set("outline.path=M0,0 L1,1 L1,0 L0,1 Z", "crosses or touches itself near 0.5,0.5")  # as much area left as right
+    check_set("outline.path=M0,0 L4,0 L4,3 L1,3 L1,-1 L0,-1 Z", "crosses or touches itself near 1,0")
+    check_set("outline.path=M0,0 L10,10 L10,0 L0,15 Z", "crosses or touches itself near 6,6")
+    check_set("outline.path=M0,0 C3,0 3,4 0,4 C-3,4 -1,1 1.5,1 L1.5,-1 Z", "crosses or touches itself near 1.5,0.")
+    write("outline.svg", "<svg><path id='outline' d='M0,0 L10,-10 L10,0 L0,-15 Z'/></svg>")
+    check_set("outline.file=outline.svg", "crosses or touches itself near 6,-6")  # as the file has it
+
+
+def test_input_teeth():
+    write("teeth.ini", SMALL + "[outline]\npath = M0 0 L1 0 1 1 .8 1 .5 .2 .2 1 0 1z\nteeth_count = 40\nteeth_amplitude = 0.002\n")
+    same(run("grow", "teeth.ini", "--maps", "none", "-o", "teeth").status, 0)
+    check_refused(run("grow", "teeth.ini", "--set", "outline.teeth_amplitude=0.3"), 3, "the teeth run into each other or the blade near",
+                  "teeth_amplitude")
+    check_refused(run("grow", "teeth.ini", "--set", "outline.teeth_amplitude=0.6"), 3, "--set outline.teeth_amplitude=0.6", "0 to 0.5")
 
 
 def test_input_empty_blade():
     check_set("outline.path=M0,0 Z", "outline")
-    check_set("outline.path=M0,0 L0,1 L0,0 Z", "outline")
+    check_set("outline.path=M0,0 L0,1 L0,0 Z", "no area")
+    check_set("outline.path=M0,0 L1,1 L2,2 Z", "no area")
+    check_set("outline.path=M0,0 L1e-6,0.5 L0,1 Z", "--set outline.path: the path is a sliver")
+    check_set("outline.path=M0,0 L1,500 L0,1000 Z", "sliver")
+
+
+def test_grow_drawn_shapes():
+    """What Inkscape saves, before Path > Object to Path and after."""
+    write("small.ini", SMALL)
+    for name, body in (("ellipse", '<ellipse id="path7" inkscape:label="outline" cx="9" cy="9" rx="3" ry="8"/>'),
+                       ("label", '<path id="path7" inkscape:label="outline" d="M9 17 C 5 9 5 9 9 1 C 13 9 13 9 9 17"/>'),
+                       ("polygon", '<polygon points="9,17 6,9 9,1 12,9"/><circle inkscape:label="tip" cx="9" cy="1" r="1"/>')):
+        write(f"{name}.svg", f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">'
+                             f'<rect width="20" height="20"/>{body}</svg>')
+        result = run("grow", "small.ini", "--set", f"outline.file={name}.svg", "--json", "--maps", "none", "-o", name)
+        same(result.status, 0, result.err)
+        leaf = json.loads(result.out)["leaf"]
+        if not 55 < leaf["length"] < 65 or not 15 < leaf["width"] < 30:
+            raise AssertionError((name, leaf))
+    write("text.svg", '<svg><text id="outline">leaf</text></svg>')
+    check_set("outline.file=text.svg", "text.svg", "Path > Object to Path")
+
+
+def test_override_wins():
+    write("drawn.svg", '<svg><polygon points="9,17 6,9 9,1 12,9"/></svg>')
+    write("drawn.ini", SMALL + "[outline]\nfile = drawn.svg\n")
+    write("path.ini", SMALL + "[outline]\npath = M0,0 L0.2,0.5 L0,1 L-0.2,0.5 Z\n")
+    result = run("grow", "drawn.ini", "--set", "outline.path=M0,0 L0.2,0.5 L0,1 L-0.2,0.5 Z", "--json", "--maps", "none", "-o", "a")
+    same(result.status, 0, result.err)
+    same(json.loads(result.out)["parameters"]["outline"]["file"], "", "the file's outline")
+    same(contents("a")["drawn.graphml"], (run("grow", "path.ini", "--maps", "none", "-o", "b"), contents("b")["path.graphml"])[1])
+    same(run("grow", "path.ini", "--set", "outline.file=drawn.svg", "--maps", "none", "-o", "c").status, 0)
+    check_refused(run("grow", "drawn.ini", "--set", "outline.path=M0,0 L1,1 L0,1 Z", "--set", "outline.file=drawn.svg"), 3,
+                  "path are both given")
+    write("both.ini", SMALL + "[outline]\nfile = drawn.svg\npath = M0,0 L1,1 L0,1 Z\n")
+    check_refused(run("grow", "both.ini"), 3, "both.ini: [outline] file and path are both given")
+
+
+def test_input_seeds():
+    check_set("veins.seeds=0,0;0,0", "--set veins.seeds: two of the first nodes are at 0,0")
+    check_set("veins.seeds=0,0.1;0,0.2;-0.0,0.1;0,0.3", "at 0,0.1")
+    check_set("veins.seed_row=5", "--set veins.seed_row = 5", "veins.seeds has 1")
+    write("row.ini", SMALL.replace("kill_distance", "seeds = 0,0.1; 0,0.1\nseed_row = 4\nkill_distance"))
+    check_refused(run("grow", "row.ini"), 3, "row.ini: [veins] seeds: two of the first nodes are at 0,0.1")
+    write("row.ini", SMALL.replace("kill_distance", "seeds = 0,0.1; 0,0.3\nseed_row = 4\nkill_distance"))
+    same(run("grow", "row.ini", "--maps", "none", "-o", "row").status, 0)
 
 
 def test_input_seeds_outside():
@@ -316,12 +383,25 @@ def test_input_sources_file():
     result = run(*listed, "--json", "--maps", "none")
     same(result.status, 0, result.err)
     same(json.loads(result.out)["sources"]["reached"], 2, "sources reached")
+    shutil.rmtree("out")
+    # a file that is given is used, unless another placement is asked for as well
+    for options in (("small.ini", "--set", "sources.file=s.csv"), ("list.ini",)):
+        write("list.ini", SMALL.replace("density", "file = s.csv\ndensity"))
+        result = run("grow", *options, "--json", "--maps", "none", "-o", "list")
+        same(result.status, 0, result.err)
+        record = json.loads(result.out)
+        same((record["sources"]["placed"], record["parameters"]["sources"]["placement"]), (2, "list"))
+    write("list.ini", SMALL.replace("density", "file = s.csv\nplacement = darts\ndensity"))
+    check_refused(run("grow", "list.ini"), 3, "list.ini: [sources] file is given, but placement is darts")
+    result = run("grow", "list.ini", "--set", "sources.placement=darts", "--json", "--maps", "none", "-o", "list")
+    same((result.status, json.loads(result.out)["parameters"]["sources"]["file"]), (0, ""))
 
 
 def test_grow_bare():
     write("small.ini", SMALL)
     result = run("grow", "small.ini", "--set", "sources.density=0", "--json", "--maps", "none")
     same((result.status, json.loads(result.out)["run"]["end"]), (0, "no source ever found room"))
+    holds(result.err, "1 node and 0 edges in ")
 
 
 # --- growing -----------------------------------------------------------------------------------------------------
@@ -376,10 +456,19 @@ def test_grow_maps():
         same(struct.unpack(">II", file.read(24)[16:]), (32, 32), "size")
 
 
+def test_grow_maps_with_commas():
+    write("small.ini", SMALL)
+    for i, option in enumerate((("--maps", "height, opacity"), ("--set", "texture.maps=height,opacity"), ("--set", "texture.maps=height opacity"))):
+        same(run("grow", "small.ini", *option, "-o", f"m{i}").status, 0)
+        same(files(f"m{i}"), files("m0"))
+    same(sum(name.endswith("height.png") for name in files("m0")), 1)
+
+
 def test_grow_frames():
     write("small.ini", SMALL)
     same(run("grow", "small.ini", "--every", "5", "--maps", "none").status, 0)
     frames = files("out/small/frames")
+    same(frames[0], "small_000000.svg", "the first frame")
     if "small_000005.svg" not in frames or "small_000010.svg" not in frames:
         raise AssertionError(frames)
     same(run("grow", "small.ini", "--every", "5", "--frames", "maps", "--maps", "opacity", "-o", "m").status, 0)
@@ -587,6 +676,9 @@ def test_params_text():
     section = run("params", "veins").out
     holds(section, "veins.kill_distance = 1")
     lacks(section, "width.exponent =")
+    lacks(section, "mesh.veins")  # a key of the section's name
+    holds(run("params", "mesh.veins").out, "mesh.veins = yes")
+    same(sorted(re.findall(r"^  (\S+) =", run("params", "file").out, re.M)), ["outline.file", "scan.file", "sources.file"])
     holds(run("params", "kill_distance").out, "veins.kill_distance = 1")
 
 
@@ -664,7 +756,7 @@ def test_endless_file():
 def test_shape_refuses():
     write("small.ini", SMALL)
     check_refused(run("shape"), 2, "a file is missing")
-    check_refused(run("shape", "small.ini", "--pose", "wiltered"), 3, "withered")
+    check_refused(run("shape", "small.ini", "--pose", "wiltered"), 3, "venation: --pose wiltered: must be one of", "withered")
     check_refused(run("shape", "small.ini", "--formats", "glbb"), 3, "did you mean 'glb'?")
     check_refused(run("shape", "small.ini", "--params", "small.ini"), 2, "--params")
     check_refused(run("shape", "small.ini", "--set", "pose.rules=no_such_vein lift 10"), 3, "no_such_vein")
@@ -692,9 +784,11 @@ def test_completion():
     write("leaf.txt", "")
     write("leaf.graphml", "")
     write("outline.svg", "")
+    write("scan.png", "")
+    write("scan.jpg", "")
     os.mkdir("leaves")
     cases = {
-        "venation ": ["grow", "shape", "params", "help", "--version", "--help"],
+        "venation ": ["grow", "shape", "capture", "params", "help", "--version", "--help"],
         "venation gr": ["grow"],
         "venation help p": ["params"],
         "venation shape le": ["leaves", "leaf.graphml", "leaf.ini"],
@@ -702,6 +796,11 @@ def test_completion():
         "venation shape leaf.ini --pose wi": ["withered"],
         "venation shape leaf.ini --formats glb,p": ["glb,ply", "glb,pov"],
         "venation grow le": ["leaves", "leaf.ini"],
+        "venation grow sc": ["scan.jpg", "scan.png"],
+        "venation shape sc": ["scan.jpg", "scan.png"],
+        "venation capture sc": ["scan.jpg", "scan.png"],
+        "venation capture scan.jpg --back sc": ["scan.jpg", "scan.png"],
+        "venation capture scan.jpg --drawing out": ["outline.svg"],
         "venation grow leaf.ini --se": ["--seed", "--set"],
         "venation grow leaf.ini --set veins.k": ["veins.kill_distance="],
         "venation grow leaf.ini --set veins.pattern=": ["open", "closed"],
@@ -716,6 +815,7 @@ def test_completion():
         "venation grow leaf.ini -o lea": ["leaves"],
         "venation grow leaf.ini --seed ": [],
         "venation params --format=ma": ["markdown", "man"],
+        "venation params --format=z": ["zsh"],
         "venation params veins.pat": ["veins.pattern"],
         "venation params vei": ["veins"] + [key for key in keys() if key.startswith("vei")],
     }
@@ -725,6 +825,102 @@ def test_completion():
     for option in re.findall(r"(?<= )--[a-z]+(?=[ =])", run("help", "grow").out.split("Files:")[0]):
         if option not in options:
             raise AssertionError(f"no {option} among {options}")
+
+
+def test_completion_zsh():
+    text = run("params", "--format=zsh").out
+    if not text.startswith("#compdef venation\n"):
+        raise AssertionError(text[:80])
+    for key in keys():
+        holds(text, f"\n    '{key}:")
+    for option in re.findall(r"(?<= )--[a-z]+(?=[ =])", run("help", "grow").out.split("Files:")[0]):
+        holds(text, option)
+    if not shutil.which("zsh"):
+        raise Skip("no zsh")
+    done = subprocess.run(["zsh", "-fn", write("_venation", text)], stderr=subprocess.PIPE, check=False)
+    same((done.returncode, done.stderr), (0, b""))
+    program = ("compdef() { :; }; source ./_venation; print -l $_venation_maps; IPREFIX=--set=veins.pattern=; compset() { :; }; "
+               "compadd() { print -- $@; }; _venation_set")  # with the completion's own commands played
+    done = subprocess.run(["zsh", "-fc", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+    same(done.stderr, b"")
+    shown = done.stdout.decode().split()
+    same((shown[:3], shown[-3:]), (["all", "none", "base_color"], ["--", "open", "closed"]))
+
+
+def test_completion_fish():
+    text = run("params", "--format=fish").out
+    for key in keys():
+        holds(text, f"\n    {key}=\\t'")
+    if not shutil.which("fish"):
+        raise Skip("no fish")
+    write("venation.fish", text)
+    done = subprocess.run(["fish", "--no-config", "-n", "venation.fish"], stderr=subprocess.PIPE, check=False)
+    same((done.returncode, done.stderr), (0, b""))
+    write("leaf.ini", SMALL)
+    write("outline.svg", "")
+    write("scan.png", "")
+    write("scan.jpg", "")
+    os.mkdir("leaves")
+    cases = {
+        "venation ": ["grow", "shape", "capture", "params", "help"],
+        "venation gr": ["grow"],
+        "venation help p": ["params"],
+        "venation shape leaf.ini --formats glb,p": ["glb,ply", "glb,pov"],
+        "venation grow le": ["leaves/", "leaf.ini"],
+        "venation grow leaf.ini --se": ["--seed", "--set"],
+        "venation grow leaf.ini --set veins.k": ["veins.kill_distance="],
+        "venation grow leaf.ini --set veins.pattern=": ["veins.pattern=open", "veins.pattern=closed"],
+        "venation grow leaf.ini --set=veins.pattern=cl": ["--set=veins.pattern=closed"],
+        "venation grow leaf.ini --set outline.file=outl": ["outline.file=outline.svg"],
+        "venation grow leaf.ini --maps opacity,he": ["opacity,height"],
+        "venation grow leaf.ini --frames ": ["svg", "maps"],
+        "venation grow leaf.ini -o lea": ["leaves/"],
+        "venation grow leaf.ini --seed ": [],
+        "venation params veins.pat": ["veins.pattern"],
+        "venation params vei": ["veins"] + [key for key in keys() if key.startswith("vei")],
+    }
+    for line, wanted in cases.items():
+        program = f"source ./venation.fish; complete -C '{line}'"
+        done = subprocess.run(["fish", "--no-config", "-c", program], env=environment(HOME=os.getcwd()), stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, check=False)
+        same(done.stderr, b"", f"stderr of completing {line!r}")
+        same(sorted(shown.split("\t")[0] for shown in done.stdout.decode().splitlines()), sorted(wanted), f"completing {line!r}")
+
+
+# --- the script that installs, builds and runs -------------------------------------------------------------------
+
+def test_run_tells():
+    """`run` with everything it calls played by scripts: what it says when it has long work to do."""
+    os.makedirs("bin")
+    for name, text in (("dpkg-query", "[ -f missing ] || echo 'install ok installed'"), ("id", "echo 0"), ("apt-get", ": >apt"),
+                       ("meson", 'mkdir -p "$2/src"; : >"$2/build.ninja"'),
+                       ("ninja", 'case "$*" in *" -n "*) if [ -f changed ]; then echo "[1/1] x"; else echo "ninja: no work to do."; fi ;;\n'
+                                 '*) [ ! -f broken ] || { echo "a wrong line"; exit 1; }\n'
+                                 'printf \'#!/bin/sh\\necho "leaf $*"\\n\' >"$2/src/venation"; chmod +x "$2/src/venation" ;; esac')):
+        write(f"bin/{name}", f"#!/bin/sh\n{text}\n")
+        os.chmod(f"bin/{name}", 0o755)
+    script = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "run")
+
+    def call(*present):
+        for name in ("missing", "changed", "broken"):
+            if os.path.exists(name):
+                os.remove(name)
+        for name in present:
+            write(name, "")
+        env = environment(PATH=f"{os.getcwd()}/bin:{os.environ['PATH']}", VENATION_BUILD=f"{os.getcwd()}/build")
+        done = subprocess.run(["sh", script, "grow", "x"], env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, timeout=TIMEOUT, check=False)
+        return Result(done.returncode, done.stdout.decode(), done.stderr.decode())
+
+    first = call("missing")
+    same((first.status, first.out), (0, "leaf grow x\n"), first.err)
+    holds(first.err, "run: installing gcc")
+    holds(first.err, "run: building (the first time takes about a minute)\n")
+    again = call()
+    same((again.status, again.out, again.err), (0, "leaf grow x\n", ""))
+    same(call("changed").err, "run: building what has changed\n")
+    broken = call("changed", "broken")
+    same((broken.status, broken.out, broken.err), (1, "", "run: building what has changed\na wrong line\nrun: the build failed\n"))
 
 
 # -----------------------------------------------------------------------------------------------------------------

@@ -357,8 +357,17 @@ static void test_refused_paths(void)
         {"M 5 5 L 5 5 5 5z", OUTLINE_ERROR_SHAPE, "base and tip are the same"},
         {"M 0 0 L 1 1 z", OUTLINE_ERROR_SHAPE, "no area"},
         {"M 0 0 L 1 1 2 2 3 3 z", OUTLINE_ERROR_SHAPE, "no area"},
-        {"M 0 0 L 1 1 1 0 0 1.5 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near"},
-        {"M 0 0 L 1 0 1 1 2 1 1 1 0 1 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near"},
+        {"M 3 3 L 3 4 3 3 z", OUTLINE_ERROR_SHAPE, "no area"},
+        {"M 0 0 L 1e-7 0.5 0 1 z", OUTLINE_ERROR_SHAPE, "a sliver, on average 5e-08 times as wide as long"},
+        {"M 0 0 L 1e-3 0.5 0 1 z", OUTLINE_ERROR_SHAPE, "a sliver"},
+        {"M 0 0 L 70 700 140 1400 140.1 1400 z", OUTLINE_ERROR_SHAPE, "a sliver"},
+        {"M 0 0 L 1 1 1 0 0 1 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 0.5,0.5"}, /* encloses 0, signed */
+        {"M 0 0 L 1 1 1 0 0 1.5 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 0.6,0.6"},
+        {"M 0 0 L 10 0 10 8 2 8 2 -4 0 -4 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 2,0"},
+        {"M 0 0 C 3 0 3 4 0 4 C -3 4 -1 1 1.5 1 L 1.5 -1 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 1.5,0."},
+        {"M 0 0 L 1 0 1 1 2 1 1 1 0 1 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 1,1"},
+        {"M 0 0 L 4 0 4 3 2 0 1 3 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 2,0"}, /* touches */
+        {"M 0 0 L 4 0 4 2 3 0 1 0 0 2 z", OUTLINE_ERROR_SHAPE, "crosses or touches itself near"}, /* runs along itself */
         {"M 0 0 H 1 V 1 H 0 z M 3 3 h 1 v 1 z", OUTLINE_ERROR_SHAPE, "2 subpaths"},
         {"M nan 0 L 1 1", OUTLINE_ERROR_SYNTAX, "found 'n'"},
         {"M 0 0 L 1e999 1", OUTLINE_ERROR_SYNTAX, "too large"},
@@ -422,8 +431,44 @@ static void test_refused_settings(void)
     def = path_def("M0 0L1 0 1 1 .55 1 .5 .2 .45 1 0 1z");
     def.waves = &deep;
     def.n_waves = 1;
-    refuse(&def, OUTLINE_ERROR_SHAPE, "teeth must be lower or fewer");
+    refuse(&def, OUTLINE_ERROR_SHAPE, "the teeth run into each other or the blade near");
     g_assert_null(outline_new(&def, NULL)); /* no one need ask why */
+}
+
+/* Wherever two segments of a crossing outline meet, the message names that point. */
+static void test_crossing_place(void)
+{
+    for (uint32_t k = 0; k < 300; k++) {
+        double u[6];
+        for (uint32_t i = 0; i < 6; i++)
+            u[i] = (double)random_block(11, 0, k, i).w[0] * 0x1p-32;
+        /* From (0,0) straight up by `high`; back across it at height y, slanting by `slope`, from right to left. */
+        double high = 2 + 3 * u[0], y = high * (0.3 + 0.4 * u[1]), right = 0.5 + 3 * u[2], left = 0.5 + 3 * u[3], slope = 0.4 * u[4] - 0.2;
+        double x = 500 * u[5];
+        char *path = g_strdup_printf("M %.9f 0 V %.9f L %.9f %.9f L %.9f %.9f z", x, high, x + right, y + slope * right, x - left,
+                                     y - slope * left);
+        OutlineDef def = path_def(path);
+        GError *error = NULL;
+        g_assert_null(outline_new(&def, &error));
+        g_assert_error(error, OUTLINE_ERROR, OUTLINE_ERROR_SHAPE);
+        const char *near = strstr(error->message, "itself near ");
+        g_assert_nonnull(near);
+        char *end;
+        g_assert_cmpfloat_with_epsilon(g_ascii_strtod(near + 12, &end), x, 1e-3);
+        g_assert_cmpfloat_with_epsilon(g_ascii_strtod(end + 1, NULL), y, 1e-3);
+        g_error_free(error);
+        g_free(path);
+    }
+}
+
+/* The narrowest leaves there are, needles and grasses, are leaves. */
+static void test_narrow(void)
+{
+    OutlineDef def = path_def("M 0 0 L 0.0035 0.1 0.0035 0.9 0 1 -0.0035 0.9 -0.0035 0.1 z");
+    polygon_free(make(&def));
+    def.path = "M 0 0 L 0.002 0.5 0 1 z";
+    def.mirror = true;
+    polygon_free(make(&def));
 }
 
 /* Random path data; every fourth text has a random byte in it. */
@@ -486,6 +531,8 @@ int main(int argc, char **argv)
     g_test_add_func("/outline/file", test_file);
     g_test_add_func("/outline/refused/paths", test_refused_paths);
     g_test_add_func("/outline/refused/settings", test_refused_settings);
+    g_test_add_func("/outline/refused/crossing-place", test_crossing_place);
+    g_test_add_func("/outline/narrow", test_narrow);
     g_test_add_func("/outline/noise", test_noise);
     return g_test_run();
 }

@@ -162,7 +162,7 @@ static void test_messages(void)
                   "params/poplar.ini:1: [Veins]: no such section; did you mean [veins]?");
     check_refused(
         "[]\n", PARAM_ERROR_UNKNOWN,
-        "params/poplar.ini:1: []: no such section; sections are leaf, outline, growth, sources, veins, width, "
+        "params/poplar.ini:1: []: no such section; sections are leaf, outline, scan, growth, sources, veins, lsystem, width, "
         "texture, mesh, pose, export");
     check_refused("[veins\n", PARAM_ERROR_FILE,
                   "params/poplar.ini:1: [veins: a section's name stands in brackets, as [veins]");
@@ -210,6 +210,77 @@ static void test_override_messages(void)
     Params *p = params_new();
     g_assert_true(params_override(p, " leaf.title = a=b ", NULL));
     g_assert_cmpstr(params_text(p, PARAM_LEAF_TITLE), ==, "a=b");
+    params_free(p);
+}
+
+/* Errors speak of what was typed. */
+static void test_places(void)
+{
+    GError *error = NULL;
+    Params *p = parse("[outline]\npath = M0 0\n", NULL);
+    g_assert_false(params_set(p, PARAM_TEXTURE_SIZE, "0", "--size", &error));
+    check_error(error, PARAM_ERROR_VALUE, "--size 0: must be a whole number from 16 to 16384 (pixels)");
+    g_assert_true(params_set(p, PARAM_TEXTURE_MAPS, "hieght", "--maps", NULL));
+    g_assert_true(params_override(p, "veins.seeds=0,0", NULL));
+    const struct {
+        ParamId id;
+        const char *place;
+    } cases[] = {{PARAM_OUTLINE_PATH, "params/poplar.ini: [outline] path"},
+                 {PARAM_TEXTURE_MAPS, "--maps"},
+                 {PARAM_VEINS_SEEDS, "--set veins.seeds"},
+                 {PARAM_WIDTH_EXPONENT, "default: [width] exponent"}};
+    for (gsize i = 0; i < G_N_ELEMENTS(cases); i++) {
+        char *place = params_place(p, cases[i].id);
+        g_assert_cmpstr(place, ==, cases[i].place);
+        g_free(place);
+    }
+    params_free(p);
+}
+
+/* Parameters that exclude each other: `text`, then the overrides; then what they are. */
+static void test_displacing(void)
+{
+    static const struct {
+        const char *text, *override[2], *path, *file, *list;
+        int placement;
+    } cases[] = {
+        {"[outline]\nfile = a.svg\n", {"outline.path=M0 0"}, "M0 0", "", "", 0},
+        {"[outline]\npath = M1 1\n", {"outline.file=b.svg"}, "", "b.svg", "", 0},
+        {"[outline]\nfile = a.svg\n", {"outline.path="}, "", "params/a.svg", "", 0},
+        {"[outline]\nfile = a.svg\npath = M1 1\n", {NULL}, "M1 1", "params/a.svg", "", 0}, /* refused later */
+        {"[outline]\nfile = a.svg\npath = M1 1\n", {"outline.path=M2 2"}, "M2 2", "", "", 0},
+        {"", {"outline.file=b.svg", "outline.path=M2 2"}, "M2 2", "b.svg", "", 0}, /* refused later */
+        {"[sources]\nfile = /s.csv\n", {NULL}, "", "", "/s.csv", 2},
+        {"[sources]\nfile = /s.csv\nplacement = margin\n", {NULL}, "", "", "/s.csv", 1}, /* refused later */
+        {"[sources]\nplacement = darts\nfile = /s.csv\n", {NULL}, "", "", "/s.csv", 0},  /* refused later */
+        {"[sources]\nplacement = darts\n", {"sources.file=t.csv"}, "", "", "t.csv", 2},
+        {"", {"sources.placement=darts", "sources.file=t.csv"}, "", "", "t.csv", 0}, /* refused later */
+        {"[sources]\nfile = /s.csv\n", {"sources.placement=margin"}, "", "", "", 1},
+        {"[sources]\nfile = /s.csv\nplacement = list\n", {"sources.placement=darts"}, "", "", "", 0},
+        {"[sources]\nfile = /s.csv\nplacement = darts\n", {"sources.placement=list"}, "", "", "/s.csv", 2},
+    };
+    for (gsize i = 0; i < G_N_ELEMENTS(cases); i++) {
+        Params *p = parse(cases[i].text, NULL);
+        for (int k = 0; k < 2 && cases[i].override[k]; k++)
+            g_assert_true(params_override(p, cases[i].override[k], NULL));
+        Params *copy = params_copy(p);
+        g_assert_cmpstr(params_text(copy, PARAM_OUTLINE_PATH), ==, cases[i].path);
+        g_assert_cmpstr(params_text(copy, PARAM_OUTLINE_FILE), ==, cases[i].file);
+        g_assert_cmpstr(params_text(copy, PARAM_SOURCES_FILE), ==, cases[i].list);
+        g_assert_cmpint(params_choice(copy, PARAM_SOURCES_PLACEMENT), ==, cases[i].placement);
+        char *text = params_to_file(copy);
+        Params *again = params_parse(text, strlen(text), "again.ini", NULL);
+        char *text_again = params_to_file(again);
+        g_assert_cmpstr(text, ==, text_again);
+        g_free(text_again);
+        g_free(text);
+        params_free(again);
+        params_free(copy);
+        params_free(p);
+    }
+    Params *p = params_new(); /* the number of the choice, which params.c knows too */
+    g_assert_true(params_override(p, "sources.placement=list", NULL));
+    g_assert_cmpint(params_choice(p, PARAM_SOURCES_PLACEMENT), ==, 2);
     params_free(p);
 }
 
@@ -445,6 +516,8 @@ int main(int argc, char **argv)
     g_test_add_func("/params/files", test_files);
     g_test_add_func("/params/messages", test_messages);
     g_test_add_func("/params/override-messages", test_override_messages);
+    g_test_add_func("/params/places", test_places);
+    g_test_add_func("/params/displacing", test_displacing);
     g_test_add_func("/params/bad-values", test_bad_values);
     g_test_add_func("/params/format", test_format);
     g_test_add_func("/params/defaults", test_defaults);

@@ -201,23 +201,23 @@ static bool same(const Skeleton *a, const Skeleton *b)
 typedef struct {
     GArray *node, *tail, *head, *kind, *width, *order, *vein;
     uint32_t n_veins;
-} Drawing;
+} Sketch;
 
-static Drawing drawing_new(void)
+static Sketch sketch_new(void)
 {
-    return (Drawing){g_array_new(FALSE, FALSE, sizeof(Vec2)),     g_array_new(FALSE, FALSE, sizeof(uint32_t)),
+    return (Sketch){g_array_new(FALSE, FALSE, sizeof(Vec2)),     g_array_new(FALSE, FALSE, sizeof(uint32_t)),
                      g_array_new(FALSE, FALSE, sizeof(uint32_t)), g_array_new(FALSE, FALSE, sizeof(uint8_t)),
                      g_array_new(FALSE, FALSE, sizeof(double)),   g_array_new(FALSE, FALSE, sizeof(uint8_t)),
                      g_array_new(FALSE, FALSE, sizeof(uint32_t)), 0};
 }
 
-static uint32_t draw_node(Drawing *d, Vec2 p)
+static uint32_t draw_node(Sketch *d, Vec2 p)
 {
     g_array_append_val(d->node, p);
     return d->node->len - 1;
 }
 
-static uint32_t draw_edge(Drawing *d, uint32_t tail, uint32_t head, uint8_t kind, double width, uint8_t order, uint32_t vein)
+static uint32_t draw_edge(Sketch *d, uint32_t tail, uint32_t head, uint8_t kind, double width, uint8_t order, uint32_t vein)
 {
     g_array_append_val(d->tail, tail);
     g_array_append_val(d->head, head);
@@ -230,7 +230,7 @@ static uint32_t draw_edge(Drawing *d, uint32_t tail, uint32_t head, uint8_t kind
 
 /* A vein from a node through the points, in edges about `step` long, its width falling from w0 to w1. Returns its last node; node k of
  * its edges is last - count + k. */
-static uint32_t draw_vein(Drawing *d, uint32_t from, const Vec2 *p, uint32_t n, double step, uint8_t order, double w0, double w1)
+static uint32_t draw_vein(Sketch *d, uint32_t from, const Vec2 *p, uint32_t n, double step, uint8_t order, double w0, double w1)
 {
     uint32_t first_edge = d->tail->len, node = from;
     for (uint32_t i = 0; i < n; i++) {
@@ -248,7 +248,7 @@ static uint32_t draw_vein(Drawing *d, uint32_t from, const Vec2 *p, uint32_t n, 
     return node;
 }
 
-static uint32_t draw_nearest(const Drawing *d, Vec2 p)
+static uint32_t draw_nearest(const Sketch *d, Vec2 p)
 {
     uint32_t best = 0;
     for (uint32_t i = 1; i < d->node->len; i++)
@@ -264,7 +264,7 @@ static void move_out(GArray *from, void *to)
 }
 
 /* Eats the drawing. */
-static Network *drawing_network(Drawing *d, const Vec2 *margin, uint32_t n_margin)
+static Network *sketch_network(Sketch *d, const Vec2 *margin, uint32_t n_margin)
 {
     Network *net = network_new(d->node->len, d->tail->len);
     net->n_veins = d->n_veins;
@@ -336,7 +336,7 @@ static bool on_outline(const Skeleton *s, Vec2 p)
 /* A midrib with three branches, one of them branched, in unit steps: every number is known. */
 static void test_pinnate(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     uint32_t base = draw_node(&d, vec2(0, 0));
     draw_vein(&d, base, (Vec2[]){{0, 90}}, 1, 1.0, 1, 4.0, 1.0);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{30, 50}}, 1, 1.0, 2, 2.0, 0.5);
@@ -346,7 +346,7 @@ static void test_pinnate(void)
     draw_vein(&d, draw_nearest(&d, vec2(15, 45)), (Vec2[]){{25, 55}}, 1, 1.0, 4, 0.6, 0.2); /* order too high */
     draw_vein(&d, draw_nearest(&d, vec2(0, 80)), (Vec2[]){{5, 85}}, 1, 1.0, 2, 0.6, 0.2);   /* too short */
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 5);
     g_assert_cmpuint(s->n_nodes, ==, 10);
     g_assert_cmpuint(s->outline->n, ==, 5); /* the base is a vertex */
@@ -380,12 +380,12 @@ static void test_pinnate(void)
 /* Long edges are cut evenly. */
 static void test_spacing(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_vein(&d, draw_node(&d, vec2(0, 0)), (Vec2[]){{0, 90}}, 1, 1.0, 1, 4.0, 1.0);
     draw_vein(&d, draw_nearest(&d, vec2(0, 30)), (Vec2[]){{30, 60}}, 1, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
     def.spacing = 20.0;
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     const double want[] = {0, 15, 30, 50, 70, 90};
     g_assert_cmpuint(sequence(s, "midrib")->n, ==, 6);
     for (uint32_t i = 0; i < 6; i++)
@@ -399,7 +399,7 @@ static void test_spacing(void)
  * times width. */
 static void test_palmate(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     uint32_t base = draw_node(&d, vec2(0, 0));
     draw_vein(&d, base, (Vec2[]){{-40, 20}}, 1, 1.0, 1, 2.0, 1.0);
     draw_vein(&d, base, (Vec2[]){{-45, 95}}, 1, 1.0, 1, 2.0, 1.0); /* the longest */
@@ -410,7 +410,7 @@ static void test_palmate(void)
     draw_vein(&d, draw_nearest(&d, vec2(0, 50)), (Vec2[]){{-15, 70}}, 1, 1.0, 2, 1.0, 0.5);
     draw_vein(&d, base, (Vec2[]){{30, 30}}, 1, 1.0, 2, 1.0, 0.5); /* a secondary from the seed itself */
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 8);
     at(tip_of(s, "midrib"), 0, 90);
     at(tip_of(s, "L1"), -15, 70);
@@ -441,11 +441,11 @@ static void test_palmate(void)
 /* A row of seeds on the margin: each first node is a vertex of the outline, exactly. */
 static void test_row(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     for (int i = -4; i <= 4; i++)
         draw_vein(&d, draw_node(&d, vec2(10.0 * i + 0.3, 0)), (Vec2[]){{10.0 * i + 0.3, 95}}, 1, 1.0, 1, 1.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 9);
     for (uint32_t i = 0; i < 9; i++) {
         g_assert_true(on_outline(s, s->rest[s->at[s->sequence[i].first]]));
@@ -455,11 +455,11 @@ static void test_row(void)
     skeleton_free(s);
 
     /* a hundred seeds, too many to stand side by side: those that stay keep clear */
-    d = drawing_new();
+    d = sketch_new();
     for (int i = -49; i <= 49; i++)
         draw_vein(&d, draw_node(&d, vec2(i, 0)), (Vec2[]){{i, 95}}, 1, 1.0, 1, 1.0, 0.5);
     def.clearance = 2.5;
-    s = make(drawing_network(&d, square, 4), &def);
+    s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, >=, 25);
     g_assert_cmpuint(s->n_sequences, <=, 40);
     skeleton_free(s);
@@ -470,10 +470,10 @@ static void test_bases(void)
 {
     const double y[] = {20.0, 0.5, 0.0, -0.5, -15.0};
     for (uint32_t k = 0; k < G_N_ELEMENTS(y); k++) {
-        Drawing d = drawing_new();
+        Sketch d = sketch_new();
         draw_vein(&d, draw_node(&d, vec2(3, y[k])), (Vec2[]){{3, 80}}, 1, 1.0, 1, 1.0, 0.5);
         SkeletonDef def = plain_def();
-        Skeleton *s = make(drawing_network(&d, square, 4), &def);
+        Skeleton *s = make(sketch_network(&d, square, 4), &def);
         at(node_at(s, "midrib", 0), 3, y[k] > 1.0 ? y[k] : 0.0);
         g_assert_cmpint(on_outline(s, node_at(s, "midrib", 0)), ==, y[k] <= 1.0);
         g_assert_cmpuint(s->outline->n, ==, y[k] > 1.0 ? 4 : 5);
@@ -481,11 +481,11 @@ static void test_bases(void)
         skeleton_free(s);
     }
     /* a point of the margin that is too near to the base goes, not the base */
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_vein(&d, draw_node(&d, vec2(0.1, 0)), (Vec2[]){{0, 80}}, 1, 1.0, 1, 1.0, 0.5);
     SkeletonDef def = plain_def();
     def.tolerance = 0.0;
-    Skeleton *s = make(drawing_network(&d, (Vec2[]){{0, 0}, {0.3, 0}, {50, 1}, {50, 80}, {0, 100}, {-50, 80}, {-50, 1}, {-0.1, 0}}, 8), &def);
+    Skeleton *s = make(sketch_network(&d, (Vec2[]){{0, 0}, {0.3, 0}, {50, 1}, {50, 80}, {0, 100}, {-50, 80}, {-50, 1}, {-0.1, 0}}, 8), &def);
     at(node_at(s, "midrib", 0), 0.1, 0);
     g_assert_true(on_outline(s, vec2(0.1, 0)));
     g_assert_false(on_outline(s, vec2(0, 0)));
@@ -495,7 +495,7 @@ static void test_bases(void)
 
 /* ---- clearing ---- */
 
-static void draw_midrib(Drawing *d)
+static void draw_midrib(Sketch *d)
 {
     draw_vein(d, draw_node(d, vec2(0, 0)), (Vec2[]){{0, 90}}, 1, 1.0, 1, 4.0, 1.0);
 }
@@ -510,11 +510,11 @@ static double steepest(const Skeleton *s, const char *name)
 /* A branch that runs along its parent before it leaves: its start moves up to where it does. */
 static void test_hair_angle(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{0.4, 40}, {30, 70}}, 2, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 2);
     g_assert_cmpfloat(node_at(s, "R1", 0).y, >, 33.0);
     g_assert_cmpfloat(node_at(s, "R1", 0).y, <, 42.0);
@@ -523,19 +523,19 @@ static void test_hair_angle(void)
     skeleton_free(s);
 
     /* one that never leaves is dropped */
-    d = drawing_new();
+    d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{0.8, 60}}, 1, 1.0, 2, 2.0, 0.5);
-    s = make(drawing_network(&d, square, 4), &def);
+    s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 1);
     g_assert_cmpuint(sequence(s, "midrib")->n, ==, 2); /* and leaves no branch node */
     skeleton_free(s);
 
     /* one that leaves at the least angle and a bit does so where it is drawn */
-    d = drawing_new();
+    d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{20, 80}}, 1, 1.0, 2, 2.0, 0.5); /* 18° */
-    s = make(drawing_network(&d, square, 4), &def);
+    s = make(sketch_network(&d, square, 4), &def);
     at(node_at(s, "R1", 0), 0, 20);
     skeleton_free(s);
 }
@@ -543,13 +543,13 @@ static void test_hair_angle(void)
 /* Branches on both sides, a little apart, leave from one node. */
 static void test_merge(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 40)), (Vec2[]){{30, 60}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 41)), (Vec2[]){{-20, 60}}, 1, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
     def.clearance = 2.0;
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 3);
     at(node_at(s, "R1", 0), 0, 40);
     at(node_at(s, "L1", 0), 0, 40);
@@ -560,23 +560,23 @@ static void test_merge(void)
 /* A vein that crosses a longer one ends where it comes near; so does one that closes in on it. */
 static void test_crossing(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 10)), (Vec2[]){{40, 50}, {40, 90}}, 2, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 60)), (Vec2[]){{48, 60}}, 1, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 3);
     g_assert_cmpfloat_with_epsilon(tip_of(s, "R2").x, 39.0, 0.01);
     at(tip_of(s, "R1"), 40, 90);
     skeleton_free(s);
 
     /* of the higher order though longer */
-    d = drawing_new();
+    d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 50)), (Vec2[]){{30, 50}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 10)), (Vec2[]){{20, 30}, {20, 95}}, 2, 1.0, 3, 2.0, 0.5);
-    s = make(drawing_network(&d, square, 4), &def);
+    s = make(sketch_network(&d, square, 4), &def);
     at(tip_of(s, "R2"), 30, 50);
     g_assert_cmpfloat_with_epsilon(tip_of(s, "R1").y, 49.0, 0.01);
     skeleton_free(s);
@@ -585,12 +585,12 @@ static void test_crossing(void)
 /* Of a vein that is cut off early nothing stays. */
 static void test_stump(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 10)), (Vec2[]){{20, 14}, {20, 95}}, 2, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 50)), (Vec2[]){{45, 50}, {45, 85}}, 2, 1.0, 2, 2.0, 0.5); /* meets it after 19 of 80 */
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 2);
     at(tip_of(s, "R1"), 20, 95);
     skeleton_free(s);
@@ -600,13 +600,13 @@ static void test_stump(void)
 static void test_hook(void)
 {
     for (int branch = 0; branch < 2; branch++) {
-        Drawing d = drawing_new();
+        Sketch d = sketch_new();
         draw_midrib(&d);
         uint32_t end = draw_vein(&d, draw_nearest(&d, vec2(0, 40)), (Vec2[]){{30, 60}, {29.29, 62.91}}, 2, 1.0, 2, 2.0, 0.5);
         if (branch)
             draw_vein(&d, end - 1, (Vec2[]){{45, 70}}, 1, 1.0, 3, 1.0, 0.5);
         SkeletonDef def = plain_def();
-        Skeleton *s = make(drawing_network(&d, square, 4), &def);
+        Skeleton *s = make(sketch_network(&d, square, 4), &def);
         at(tip_of(s, "R1"), branch ? 29.29 : 30, branch ? 62.91 : 60);
         g_assert_cmpuint(s->n_sequences, ==, 2 + branch);
         skeleton_free(s);
@@ -616,14 +616,14 @@ static void test_hook(void)
 /* Tips a hair from the margin end on it; those that run along it stop; those that leave the blade end where they do. */
 static void test_tips(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 40)), (Vec2[]){{49.5, 60}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 30)), (Vec2[]){{-80, 50}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{40, 20}, {49.4, 30}, {49.4, 55}}, 3, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 70)), (Vec2[]){{30, 85}}, 1, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 5);
     g_assert_true(on_outline(s, tip_of(s, "R2")));
     g_assert_cmpfloat_with_epsilon(tip_of(s, "R2").x, 50.0, 1e-12);
@@ -639,11 +639,11 @@ static void test_tips(void)
 /* A curl ends where it turns back. */
 static void test_curl(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 30)), (Vec2[]){{30, 50}, {30, 70}, {12, 70}, {12, 55}, {20, 55}}, 5, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     at(tip_of(s, "R1"), 30, 70);
     skeleton_free(s);
 }
@@ -651,7 +651,7 @@ static void test_curl(void)
 /* A vein that runs round its start comes back to itself; one that folds back sharply would lie on itself. */
 static void test_itself(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     Vec2 round[26] = {{24, 50}};
     const double c = 0.96126169593831889, s1 = 0.27563735581699916; /* 16° */
     for (int i = 1; i < 26; i++) { /* 400° */
@@ -660,23 +660,23 @@ static void test_itself(void)
     }
     draw_vein(&d, draw_node(&d, vec2(0, 50)), round, 26, 1.0, 1, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpfloat(sequence(s, "midrib")->length, >, 24.0 + 2.0 * G_PI * 23.0);
     g_assert_cmpfloat(tip_of(s, "midrib").y, <, 49.1);
     g_assert_cmpfloat(tip_of(s, "midrib").y, >, 48.0);
     skeleton_free(s);
 
-    d = drawing_new();
+    d = sketch_new();
     draw_vein(&d, draw_node(&d, vec2(0, 50)), (Vec2[]){{0, 60}, {0.15, 59.2}, {0.3, 70}}, 3, 0.0, 1, 2.0, 0.5);
     def.tolerance = 0.0;
-    s = make(drawing_network(&d, square, 4), &def);
+    s = make(sketch_network(&d, square, 4), &def);
     at(tip_of(s, "midrib"), 0, 60);
     skeleton_free(s);
 
-    d = drawing_new();
+    d = sketch_new();
     draw_vein(&d, draw_node(&d, vec2(0, 50)), (Vec2[]){{0, 60}, {0.4, 59.15}, {0.6, 70}}, 3, 0.0, 1, 2.0, 0.5); /* by 25° */
     def.min_angle = 30.0;
-    s = make(drawing_network(&d, square, 4), &def);
+    s = make(sketch_network(&d, square, 4), &def);
     at(tip_of(s, "midrib"), 0, 60);
     skeleton_free(s);
 }
@@ -684,12 +684,12 @@ static void test_itself(void)
 /* What leaves a vein where that ends on the margin goes. */
 static void test_branch_at_tip(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 40)), (Vec2[]){{49.5, 60}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(49.2, 59.9)), (Vec2[]){{30, 90}}, 1, 1.0, 3, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 2);
     g_assert_true(on_outline(s, tip_of(s, "R1")));
     skeleton_free(s);
@@ -698,13 +698,13 @@ static void test_branch_at_tip(void)
 /* The part of a vein beyond one that can't be kept goes, with what leaves it there. */
 static void test_orphans(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{-70, 50}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(-60, 45.7)), (Vec2[]){{-60, 70}, {-20, 70}}, 2, 1.0, 3, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(-20, 28.6)), (Vec2[]){{-20, 50}}, 1, 1.0, 3, 2.0, 0.5);
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 3);
     at(tip_of(s, "L1.R1"), -20, 50);
     skeleton_free(s);
@@ -714,9 +714,9 @@ static void test_orphans(void)
 
 static Network *midrib_in(const Vec2 *margin, uint32_t n, double y0, double y1)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_vein(&d, draw_node(&d, vec2(0, y0)), (Vec2[]){{0, y1}}, 1, 1.0, 1, 1.0, 0.5);
-    return drawing_network(&d, margin, n);
+    return sketch_network(&d, margin, n);
 }
 
 /* Teeth higher than the tolerance stay, lower ones go; base, tip and size stay. */
@@ -777,12 +777,12 @@ static void test_sinus(void)
 {
     const Vec2 heart[] = {{0, 0}, {-0.1, -1}, {-2, -20}, {-40, -20}, {-40, 60}, {0, 80}, {40, 60}, {40, -20}, {2, -20}, {0.1, -1}};
     for (double tolerance = 0.0; tolerance < 0.5; tolerance += 0.4) {
-        Drawing d = drawing_new();
+        Sketch d = sketch_new();
         draw_vein(&d, draw_node(&d, vec2(0, 0.5)), (Vec2[]){{0, 70}}, 1, 1.0, 1, 2.0, 0.5);
         draw_vein(&d, draw_node(&d, vec2(0.3, -0.6)), (Vec2[]){{8, -18}}, 1, 1.0, 1, 1.0, 0.5);
         SkeletonDef def = plain_def();
         def.tolerance = tolerance;
-        Skeleton *s = make(drawing_network(&d, heart, 10), &def);
+        Skeleton *s = make(sketch_network(&d, heart, 10), &def);
         g_assert_true(on_outline(s, vec2(0, 0)));
         g_assert_cmpfloat(fabs(s->outline->area - 7160.0), <, 10.0);
         at(node_at(s, "midrib", 0), 0, 0);
@@ -812,9 +812,9 @@ static void test_no_crossing(void)
         v[n++] = vec2(-40, 90);
         SkeletonDef def = plain_def();
         def.tolerance = tolerance;
-        Drawing d = drawing_new();
+        Sketch d = sketch_new();
         draw_vein(&d, draw_node(&d, vec2(0, 0)), (Vec2[]){{0, 25}}, 1, 1.0, 1, 1.0, 0.5);
-        Skeleton *s = make(drawing_network(&d, v, n), &def);
+        Skeleton *s = make(sketch_network(&d, v, n), &def);
         for (int i = 0; i <= 150; i++)
             open += !polygon_contains(s->outline, bed[i]);
         if (tolerance < 1.0 || (tolerance > 2.0 && tolerance < 5.0)) /* else the chords are apart but for pinches, which are closed */
@@ -827,13 +827,13 @@ static void test_no_crossing(void)
 
 static Skeleton *small_skeleton(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_midrib(&d);
     draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{30, 50}}, 1, 1.0, 2, 2.0, 0.5);
     draw_vein(&d, draw_nearest(&d, vec2(0, 50)), (Vec2[]){{-30, 80}}, 1, 1.0, 2, 2.0, 0.5);
     SkeletonDef def = plain_def();
     def.spacing = 12.0;
-    return make(drawing_network(&d, diamond, 5), &def);
+    return make(sketch_network(&d, diamond, 5), &def);
 }
 
 static double longest_edge(const Skeleton *s)
@@ -1049,9 +1049,9 @@ static void refuse(Network *net, const char *pattern, SkeletonError code)
 /* Node 0 at the base, 1 … 9 up the middle, each edge k from k to k + 1. */
 static Network *ladder(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     draw_vein(&d, draw_node(&d, vec2(0, 0)), (Vec2[]){{0, 90}}, 1, 10.0, 1, 1.0, 1.0);
-    return drawing_network(&d, square, 4);
+    return sketch_network(&d, square, 4);
 }
 
 static void test_bad(void)
@@ -1128,7 +1128,7 @@ static void test_bad(void)
 static void test_two_parents(void)
 {
     for (int wide = 0; wide < 2; wide++) {
-        Drawing d = drawing_new();
+        Sketch d = sketch_new();
         draw_midrib(&d);
         uint32_t a = draw_vein(&d, draw_nearest(&d, vec2(0, 20)), (Vec2[]){{20, 40}}, 1, 1.0, 2, 2.0, 2.0);
         uint32_t b = draw_vein(&d, draw_nearest(&d, vec2(0, 60)), (Vec2[]){{20, 46}}, 1, 1.0, 2, 2.0, 2.0);
@@ -1138,7 +1138,7 @@ static void test_two_parents(void)
         uint32_t end = draw_node(&d, vec2(40, 43));
         draw_edge(&d, meet, end, EDGE_VEIN, 2.0, 2, wide ? 2 : 1);
         SkeletonDef def = plain_def();
-        Skeleton *s = make(drawing_network(&d, square, 4), &def);
+        Skeleton *s = make(sketch_network(&d, square, 4), &def);
         g_assert_cmpuint(s->n_sequences, ==, 3);
         at(tip_of(s, wide ? "R2" : "R1"), 40, 43);
         at(tip_of(s, wide ? "R1" : "R2"), 20, wide ? 40 : 46);
@@ -1149,7 +1149,7 @@ static void test_two_parents(void)
 /* Edges of one vein that part: the widest goes on, the other begins a sequence. Node numbers need not rise along a vein. */
 static void test_odd_veins(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     const Vec2 p[] = {{0, 90}, {0, 50}, {0, 0}, {30, 80}};
     for (int i = 0; i < 4; i++)
         draw_node(&d, p[i]);
@@ -1158,7 +1158,7 @@ static void test_odd_veins(void)
     draw_edge(&d, 2, 1, EDGE_VEIN, 2.0, 1, 0);
     d.n_veins = 1;
     SkeletonDef def = plain_def();
-    Skeleton *s = make(drawing_network(&d, square, 4), &def);
+    Skeleton *s = make(sketch_network(&d, square, 4), &def);
     g_assert_cmpuint(s->n_sequences, ==, 2);
     at(tip_of(s, "midrib"), 30, 80);
     at(tip_of(s, "P2"), 0, 90);
@@ -1185,7 +1185,7 @@ static Network *random_network(uint32_t run)
 {
     Vec2 blade[256];
     uint32_t n_blade = star_blade(blade, run), draw = 0;
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     uint32_t primaries = 1 + run % 4, veins = primaries + (uint32_t)(uniform(2, run, draw++) * 60.0);
     double step = run % 5 == 0 ? 8.0 : 1.0, sway = run % 2 ? 0.1 : 0.5;
     for (uint32_t k = 0; k < veins; k++) {
@@ -1217,7 +1217,7 @@ static Network *random_network(uint32_t run)
             draw_edge(&d, (uint32_t)(uniform(2, run, draw) * d.node->len), node, EDGE_ANASTOMOSIS, 0.5, 4, k);
     }
     d.n_veins = veins;
-    return drawing_network(&d, blade, n_blade);
+    return sketch_network(&d, blade, n_blade);
 }
 
 static SkeletonDef random_def(uint32_t run)
@@ -1346,7 +1346,7 @@ static void test_leaf(gconstpointer data)
 /* A million nodes: a midrib, combs of secondaries and tertiaries, twigs. */
 static void test_large(void)
 {
-    Drawing d = drawing_new();
+    Sketch d = sketch_new();
     uint32_t mid = draw_node(&d, vec2(0, 0));
     const Vec2 margin[4] = {{0, 0}, {2000, 2000}, {0, 4000}, {-2000, 2000}};
     GArray *spine = g_array_new(FALSE, FALSE, sizeof(uint32_t));
@@ -1369,7 +1369,7 @@ static void test_large(void)
         }
     }
     g_array_free(spine, TRUE);
-    Network *net = drawing_network(&d, margin, 4);
+    Network *net = sketch_network(&d, margin, 4);
     SkeletonDef def = skeleton_def_default(4000.0);
     gint64 start = g_get_monotonic_time();
     GError *error = NULL;

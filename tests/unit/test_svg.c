@@ -339,6 +339,86 @@ static void test_files(void)
     check_file("<svg><path d='M0 0 4 0 4 4 0 0'/><path d='M0 0 1 0 1 1z'/></svg>", vec2(0, 0), vec2(4, 0));
 }
 
+/* The margin of a file with one shape in it, its points in the order they are drawn; y up. */
+static void check_corners(const char *body, guint n, const Vec2 *corner)
+{
+    char *text = g_strdup_printf("<svg>%s</svg>", body);
+    SvgShape shape = {0};
+    GError *error = NULL;
+    read_text(text, &shape, &error);
+    g_assert_no_error(error);
+    GArray *points = svgpath_flatten(shape.path, 0, 100.0);
+    g_assert_cmpuint(points->len, ==, n);
+    for (guint i = 0; i < n; i++) {
+        CLOSE(g_array_index(points, Vec2, i).x, corner[i].x);
+        CLOSE(g_array_index(points, Vec2, i).y, corner[i].y);
+    }
+    g_array_unref(points);
+    svgshape_clear(&shape);
+    g_free(text);
+}
+
+static void check_area(const char *body, double area, Vec2 first)
+{
+    char *text = g_strdup_printf("<svg>%s</svg>", body);
+    SvgShape shape = {0};
+    GError *error = NULL;
+    read_text(text, &shape, &error);
+    g_assert_no_error(error);
+    g_assert_true(g_array_index(shape.path->subpaths, Subpath, 0).closed);
+    GArray *points = svgpath_flatten(shape.path, 0, 1e-6);
+    g_assert_cmpfloat_with_epsilon(fabs(area_of(points)), area, 1e-4 * area);
+    CLOSE(g_array_index(points, Vec2, 0).x, first.x);
+    CLOSE(g_array_index(points, Vec2, 0).y, first.y);
+    g_array_unref(points);
+    svgshape_clear(&shape);
+    g_free(text);
+}
+
+static void test_shapes(void)
+{
+    check_corners("<polygon points='1,2 3,4 5-6'/>", 3, (Vec2[]){{1, -2}, {3, -4}, {5, 6}});
+    check_corners("<polyline id='outline' points=' 1 2, 3 4\n5 6 '/>", 3, (Vec2[]){{1, -2}, {3, -4}, {5, -6}});
+    check_corners("<rect x='1' y='2' width='3' height='4px' transform='translate(10)'/>", 5,
+                  (Vec2[]){{11, -2}, {14, -2}, {14, -6}, {11, -6}, {11, -2}});
+    check_area("<rect x='1' y='2' width='3' height='4' rx='0.5'/>", 12 - (4 - G_PI) * 0.25, vec2(1.5, -2));
+    check_area("<rect x='1' y='2' width='3' height='4' rx='0.5' ry='1'/>", 12 - (4 - G_PI) * 0.5, vec2(1.5, -2));
+    check_area("<rect width='2' height='4' rx='9' ry='9'/>", G_PI * 2, vec2(1, 0)); /* held to half the sides: an ellipse */
+    check_area("<circle cx='3' cy='4' r='2'/>", G_PI * 4, vec2(3, -6));
+    check_area("<ellipse id='outline' cx='3' cy='4' rx='1' ry='5' transform='scale(2)'/>", G_PI * 20, vec2(6, -18));
+}
+
+/* Which of several shapes is the margin: an id, a label, the largest path or polygon, the largest of the rest. */
+static void test_names(void)
+{
+    const char *page = "<rect x='7' width='100' height='100'/>", *labelled = "<path inkscape:label='outline' id='p1' d='M1 2 3 4'/>",
+               *named = "<polygon id='outline' points='5 6 7 8 9 0'/>", *large = "<path d='M8 8 9 8 9 9z'/>",
+               *layer = "<g id='layer1' inkscape:groupmode='layer' inkscape:label='outline'><g inkscape:label='base'/></g>",
+               *mark = "<circle inkscape:label='base' cx='1' cy='2' r='900'/>";
+    const struct {
+        const char *body[4];
+        double first_x;
+    } cases[] = {
+        {{page, large, labelled, named}, 5},  {{named, labelled, large, page}, 5}, {{large, labelled, page, layer}, 1},
+        {{labelled, large, layer, page}, 1},  {{page, large, layer, mark}, 8},     {{large, page, layer, mark}, 8},
+        {{layer, page, mark, "<circle cx='9' cy='9' r='1'/>"}, 7},
+    };
+    for (guint k = 0; k < G_N_ELEMENTS(cases); k++) {
+        const char *const *b = cases[k].body;
+        char *text = g_strconcat(INKSCAPE, b[0], b[1], b[2], b[3], "</svg>", NULL);
+        SvgShape shape = {0};
+        GError *error = NULL;
+        read_text(text, &shape, &error);
+        g_assert_no_error(error);
+        CLOSE(g_array_index(shape.path->curves, Curve, 0).p[0].x, cases[k].first_x);
+        g_assert_true(shape.has_base == (strstr(text, "r='900'") != NULL));
+        if (shape.has_base)
+            CLOSE(shape.base.y, -2.0);
+        svgshape_clear(&shape);
+        g_free(text);
+    }
+}
+
 static void test_marks(void)
 {
     SvgShape shape = {0};
@@ -371,7 +451,15 @@ static void test_file_errors(void)
         {"<svg>\n<path id='outline' d='M0 q'/></svg>", "line 2: <path id=\"outline\">: at character 4",
          OUTLINE_ERROR_SYNTAX},
         {"<svg><path id='p7' d='M0 q'/></svg>", "<path id=\"p7\">: at character 4", OUTLINE_ERROR_SYNTAX},
-        {"<svg><g id='outline'/></svg>", "must be a path", OUTLINE_ERROR_SYNTAX},
+        {"<svg><g id='outline'/></svg>", "Object > Ungroup, Path > Object to Path", OUTLINE_ERROR_SYNTAX},
+        {"<svg><text id='t' inkscape:label='outline'/></svg>",
+         "<text inkscape:label=\"outline\">: the outline must be a path or a simple shape (in Inkscape: Path > Object to Path)",
+         OUTLINE_ERROR_SYNTAX},
+        {"<svg><text>leaf</text></svg>", "Path > Object to Path", OUTLINE_ERROR_SHAPE},
+        {"<svg><path id='p2' inkscape:label='tip' d='M0 0 1 1'/></svg>", "<path inkscape:label=\"tip\">: the tip must be marked",
+         OUTLINE_ERROR_SYNTAX},
+        {"<svg><polygon id='outline' points='1 2 3'/></svg>", "at character 6: expected a number, found the end", OUTLINE_ERROR_SYNTAX},
+        {"<svg><rect id='outline' width='50%'/></svg>", "<rect id=\"outline\">: width: at character 3", OUTLINE_ERROR_SYNTAX},
         {"<svg><rect id='base'/></svg>", "the base must be marked by a circle", OUTLINE_ERROR_SYNTAX},
         {"<svg><circle id='tip' cx='1mm'/></svg>", "a number in user units, found 'm'", OUTLINE_ERROR_SYNTAX},
         {"<svg><g transform='turn(1)'/></svg>", "<g>, transform: at character 1", OUTLINE_ERROR_SYNTAX},
@@ -412,6 +500,8 @@ int main(int argc, char **argv)
     g_test_add_func("/svg/path/errors", test_path_errors);
     g_test_add_func("/svg/transforms", test_transforms);
     g_test_add_func("/svg/files", test_files);
+    g_test_add_func("/svg/shapes", test_shapes);
+    g_test_add_func("/svg/names", test_names);
     g_test_add_func("/svg/marks", test_marks);
     g_test_add_func("/svg/file-errors", test_file_errors);
     return g_test_run();

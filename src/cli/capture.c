@@ -1,0 +1,147 @@
+/* venation capture: outline and veins of a real leaf from its scan. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/run.h"
+
+typedef struct {
+    RunArgs run;
+    gboolean each, table;
+    char *params, *back, *drawing, *method, *maps;
+} CaptureArgs;
+
+#define FIELD(name) (gpointer) offsetof(CaptureArgs, name)
+static const GOptionEntry options[] = {
+    RUN_OPTIONS,
+    {"params", 0, 0, G_OPTION_ARG_FILENAME, FIELD(params), "Parameter file to begin from (default: the defaults for a scan)", "PARAMS"},
+    {"method", 0, 0, G_OPTION_ARG_FILENAME, FIELD(method),
+     "How the outline is found, as --set scan.method: by threshold, or by edges, corners and curves", "contour|fang"},
+    {"back", 0, 0, G_OPTION_ARG_FILENAME, FIELD(back), "Scan of the shadow side, as --set scan.back", "IMAGE"},
+    {"drawing", 0, 0, G_OPTION_ARG_FILENAME, FIELD(drawing), "Drawn veins instead of those found in the scan, as --set veins.drawing",
+     "DRAWING"},
+    {"maps", 0, 0, G_OPTION_ARG_FILENAME, FIELD(maps), "Maps to paint: all, none, or names parted by commas, as --set texture.maps", "LIST"},
+    {"each", 0, 0, G_OPTION_ARG_NONE, FIELD(each), "Capture every leaf of the image, as NAME_1, NAME_2 … from the largest on", NULL},
+    {"table", 0, 0, G_OPTION_ARG_NONE, FIELD(table),
+     "Only print how many nodes the outline has for squares of 1 to 16 pixels and tolerances of 0 to 16", NULL},
+    {0},
+};
+
+typedef struct {
+    Run run;
+    const CaptureArgs *args;
+    guint32 leaves; /* of the image; 1 without --each */
+} Capture;
+
+static gboolean set_option(Run *run, const char *option, const char *key, const char *value, GError **error)
+{
+    return !value || cli_set(run->params, option, key, value, error);
+}
+
+static gboolean read_params(Capture *c, GError **error)
+{
+    Run *run = &c->run;
+    const CaptureArgs *a = c->args;
+    return run_read_params(run, a->params, error) && ven_params_use_scan(run->params, run->path, error) &&
+           run_set(run, "veins.origin", "drawn", error) && set_option(run, "--method", "scan.method", a->method, error) &&
+           set_option(run, "--back", "scan.back", a->back, error) && set_option(run, "--drawing", "veins.drawing", a->drawing, error) &&
+           set_option(run, "--maps", "texture.maps", a->maps, error);
+}
+
+/* ---- nodes of the outline (Hong 2005, tables 5.1 and 5.2) ---- */
+
+static int print_table(Capture *c)
+{
+    GError *error = NULL;
+    char *text = ven_scan_table(c->run.params, &error);
+    if (!text)
+        return run_report(error, TRUE);
+    int status = cli_print(text);
+    g_free(text);
+    return status;
+}
+
+/* ---- leaves ---- */
+
+static char *leaf_name(const Capture *c, guint32 leaf)
+{
+    return c->args->each ? g_strdup_printf("%s_%u", c->run.name, leaf) : g_strdup(c->run.name);
+}
+
+/* Captures all leaves and writes each as soon as it is known; the last one stays for the summary and the record. */
+static gboolean write_leaves(Run *run, const char *dir, gpointer user, GError **error)
+{
+    Capture *c = user;
+    gboolean ok = TRUE;
+    for (guint32 i = 1; ok && i <= c->leaves; i++) {
+        char *name = leaf_name(c, i), *number = g_strdup_printf("%u", i);
+        VenOptions how = {.threads = (unsigned)run->threads};
+        ven_leaf_free(run->leaf);
+        run->leaf = !c->args->each || run_set(run, "scan.leaf", number, error) ? ven_grow(run->params, run->seed, &how, error) : NULL;
+        ok = run->leaf && ven_write(run->leaf, dir, name, error) && ven_write_capture(run->leaf, dir, name, error);
+        g_free(number);
+        g_free(name);
+    }
+    return ok;
+}
+
+static void summarise(const Capture *c)
+{
+    guint32 edges = ven_leaf_edges(c->run.leaf);
+    char *what = c->leaves > 1 ? g_strdup_printf("%u leaves captured", c->leaves)
+                 : edges       ? g_strdup_printf("outline captured, with %u nodes of veins", ven_leaf_nodes(c->run.leaf))
+                               : g_strdup("outline captured, without veins");
+    run_summarise(&c->run, what);
+    g_free(what);
+    char *dir = g_filename_display_name(c->run.dir), *name = leaf_name(c, 1);
+    if (!c->run.args->quiet)
+        fprintf(stderr, "%s/%s_drawing.svg: correct outline and veins with Inkscape; then venation grow, or shape, %s/%s.ini\n", dir, name,
+                dir, name);
+    g_free(name);
+    g_free(dir);
+}
+
+static int carry_out(Capture *c)
+{
+    Run *run = &c->run;
+    GError *error = NULL;
+    if (!read_params(c, &error))
+        return run_report(error, TRUE);
+    if (c->args->table)
+        return print_table(c);
+    c->leaves = c->args->each ? ven_scan_leaves(run->params, &error) : 1;
+    if (c->leaves == 0)
+        return run_report(error, TRUE);
+    int status = run_begin(run);
+    if (status == 0)
+        status = run_write(run, write_leaves, c);
+    if (status != 0)
+        return status;
+    summarise(c);
+    return run->args->json ? run_print_record(ven_leaf_record(run->leaf)) : 0;
+}
+
+static int run_capture(const Verb *verb, int argc, char **argv)
+{
+    CaptureArgs args = {0};
+    int status;
+    if (cli_parse(verb, &args, argc, argv, &status)) {
+        Capture c = {.args = &args};
+        status = run_read_args(&c.run, verb, &args.run) ? carry_out(&c) : EXIT_USAGE;
+        run_clear(&c.run);
+    }
+    cli_clear(verb, &args);
+    return status;
+}
+
+const Verb capture_verb = {
+    "capture",
+    "IMAGE",
+    "Take outline and veins of a real leaf from a scan",
+    "Finds the leaf in a scan (PNG, JPEG or TIFF), traces its outline, cuts off the petiole, and looks for primary and secondary veins; or takes "
+    "veins that were drawn. Written are the maps, with the scan's colours, the network, the record, and what to go on with: NAME_drawing.svg, "
+    "the scan with outline and veins as layers, to be corrected in Inkscape, and NAME.ini, a parameter file from which grow fills in the finer "
+    "veins and shape makes a bent leaf.\n\n"
+    "grow and shape take an image, too: they do all at once.",
+    options,
+    run_capture,
+};

@@ -1,0 +1,37 @@
+/* What a leaf starts from: its outline, from curves, a drawing or a scan; veins that were drawn or found; and the scan's colours. */
+#ifndef LIB_GROUND_H
+#define LIB_GROUND_H
+
+#include "geom/affine.h"
+#include "param/params.h"
+#include "scan/fang.h"
+#include "scan/profile.h"
+#include "sim/drawing.h"
+
+typedef struct {
+    Polygon *outline;  /* leaf coordinates */
+    Vec2 base, tip;    /* where 0,0 and 0,1 lie in the units of the outline's source (pixels of a scan), y up */
+    Drawing *drawing;  /* leaf coordinates; NULL: no veins are drawn or found */
+    bool found;        /* they were found in the scan */
+    /* of a scan, else NULL */
+    Scan *scan, *back;
+    Affine to_scan, to_back; /* leaf coordinates to columns and rows, the image's upper left corner at 0,0 */
+    Profile *profile;        /* by threshold; NULL when [outline] gave the margin */
+    Threshold threshold;
+    FangProfile *fang;       /* by edges */
+} Ground;
+
+/* Counted references, as the frames of a run share it. `veins`: drawn ones are read, others looked for in the scan. NULL with an error that names
+ * file or parameter. */
+Ground *ground_new(const Params *p, bool veins, GError **error);
+Ground *ground_ref(Ground *g);
+void ground_unref(Ground *g);
+
+/* How many leaves the scan holds (scan.leaf counts them); 0 with an error. */
+uint32_t ground_count_leaves(const Params *p, GError **error);
+
+/* Lays the back of a leaf onto its front: the map from leaf coordinates to the back's columns and rows, from its own outline, base and tip,
+ * by iterated closest points (Besl & McKay 1992) between the mirrored outlines. */
+Affine ground_align_back(const Polygon *outline, const Profile *back, uint32_t height);
+
+#endif

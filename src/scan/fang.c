@@ -1,0 +1,168 @@
+#include "scan/fang.h"
+
+#include <string.h>
+
+#include "scan/fang_draw.h"
+#include "scan/fang_edges.h"
+#include "scan/fang_outline.h"
+#include "scan/fang_region.h"
+#include "scan/profile.h"
+
+#define MARGIN 8.0 /* around the leaf's box, pixels, besides the reach of smoothing */
+
+FangDef fang_def_default(void)
+{
+    return (FangDef){.edges = edges_def_default(), .corners = corners_def_default(), .fit = bezierfit_def_default()};
+}
+
+void fang_profile_free(FangProfile *p)
+{
+    if (!p)
+        return;
+    grey_image_free(p->edges);
+    polygon_free(p->border);
+    polygon_free(p->contour);
+    if (p->corners)
+        g_array_unref(p->corners);
+    bezierfit_free(p->fit);
+    polygon_free(p->outline);
+    g_free(p);
+}
+
+/* Part of a channel in grey values 0 … 255. */
+static GreyImage *grey_part(const Scan *s, Channel channel, MaskBox b)
+{
+    GreyImage *g = grey_image_new(b.x1 - b.x0 + 1, b.y1 - b.y0 + 1);
+    double scale = s->depth == 8 ? 1.0 : 1.0 / 257.0;
+    for (uint32_t y = 0; y < g->height; y++)
+        for (uint32_t x = 0; x < g->width; x++)
+            g->px[(gsize)y * g->width + x] = (float)(channel_value(s, channel, b.x0 + x, b.y0 + y) * scale);
+    return g;
+}
+
+/* The pixels around a polygon and some more. */
+static MaskBox around(const Scan *s, Box2 b, double margin)
+{
+    double w = s->width - 1.0, h = s->height - 1.0;
+    return (MaskBox){(uint32_t)CLAMP(floor(b.x0 - margin), 0.0, w), (uint32_t)CLAMP(floor(s->height - b.y1 - margin), 0.0, h),
+                     (uint32_t)CLAMP(ceil(b.x1 + margin), 0.0, w), (uint32_t)CLAMP(ceil(s->height - b.y0 + margin), 0.0, h)};
+}
+
+/* The operator whose response tells how far a place is from an edge, too: Sobel's for those that respond on lines only. */
+static EdgesOperator broad(EdgesOperator op) { return op == EDGES_CANNY || op == EDGES_LAPLACIAN ? EDGES_SOBEL : op; }
+
+/* Edges, and the region that they enclose. */
+static bool find_region(const Scan *s, const Threshold *t, const Mask *m, FangProfile *out, GError **error)
+{
+    GreyImage *grey = grey_part(s, out->channel, (MaskBox){0, 0, s->width - 1, s->height - 1}), *response = NULL;
+    bool lower = out->used.automatic;
+    if (fang_choose_edges(s, t, grey, &out->used, error) && (response = edges_response(grey, broad(out->used.op), out->used.sigma, error)))
+        out->edges = fang_region(s, t, grey, response, lower, &out->used, m, &out->closed, error);
+    grey_image_free(grey);
+    grey_image_free(response);
+    return out->edges != NULL;
+}
+
+/* The border of the largest region enclosed, without the petiole, starting at the base. */
+static bool find_border(const Scan *s, const Mask *m, const FangDef *def, FangProfile *out, GError **error)
+{
+    ProfileDef how = profile_def_default();
+    how.subpixel = false;
+    how.tolerance = 0.0;
+    how.keep_stalk = def->keep_stalk;
+    how.has_base = def->has_base;
+    how.has_tip = def->has_tip;
+    how.base = def->base;
+    how.tip = def->tip;
+    GError *why = NULL;
+    GPtrArray *leaf = profile_capture_mask(s, m, &how, &why);
+    if (!leaf) {
+        if (!g_error_matches(why, SCAN_ERROR, SCAN_ERROR_NO_LEAF)) {
+            g_propagate_error(error, why);
+            return false;
+        }
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: the edges in the %s channel enclose nothing", channel_name(out->channel));
+        g_error_free(why);
+        return false;
+    }
+    const Profile *p = leaf->pdata[0];
+    out->border = polygon_new(p->outline->v, p->outline->n);
+    out->mm_per_pixel = p->mm_per_pixel;
+    out->base = 0;
+    for (uint32_t i = 1; i < out->border->n; i++)
+        if (!out->tip || vec_dist2(out->border->v[i], p->tip) < vec_dist2(out->border->v[out->tip], p->tip))
+            out->tip = i;
+    g_ptr_array_free(leaf, TRUE);
+    return true;
+}
+
+static bool find_contour(const Scan *s, FangProfile *out, GError **error)
+{
+    MaskBox box = around(s, out->border->box, MARGIN + 5.0 * out->used.sigma);
+    GreyImage *grey = grey_part(s, out->channel, box);
+    GreyImage *response = edges_response(grey, broad(out->used.op), out->used.sigma, error);
+    grey_image_free(grey);
+    if (!response)
+        return false;
+    Strength strength = {response, broad(out->used.op), vec2(box.x0, box.y0), s->width, s->height};
+    out->contour = fang_draw(out->border, &strength);
+    grey_image_free(response);
+    return true;
+}
+
+static bool find_corners(const Scan *s, const FangDef *def, FangProfile *out, GError **error)
+{
+    MaskBox box = around(s, out->contour->box, MARGIN + 4.0 * (def->corners.smoothing + def->corners.window));
+    GreyImage *grey = grey_part(s, out->channel, box);
+    uint32_t n = out->contour->n;
+    Vec2 *down = g_new(Vec2, n);
+    for (uint32_t i = 0; i < n; i++)
+        down[i] = vec2(out->contour->v[i].x - box.x0, s->height - out->contour->v[i].y - box.y0);
+    out->corners = corners_find(grey, down, n, out->base, out->tip, &def->corners, error);
+    g_free(down);
+    grey_image_free(grey);
+    return out->corners != NULL;
+}
+
+static bool find_fit(const FangDef *def, FangProfile *out, GError **error)
+{
+    GArray *at = g_array_new(FALSE, FALSE, sizeof(uint32_t));
+    for (guint k = 0; k < out->corners->len; k++)
+        g_array_append_val(at, g_array_index(out->corners, Corner, k).at);
+    out->fit = fang_fit(out->contour, at, out->base, out->tip, &def->fit, &out->outline, error);
+    g_array_unref(at);
+    return out->fit != NULL;
+}
+
+static bool capture(const Scan *s, const Threshold *t, const Mask *m, const FangDef *def, FangProfile *out, GError **error)
+{
+    return find_region(s, t, m, out, error) && find_border(s, m, def, out, error) && find_contour(s, out, error) &&
+           find_corners(s, def, out, error) && find_fit(def, out, error);
+}
+
+FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error)
+{
+    if ((uint64_t)s->width * s->height > FANG_MAX_PIXELS) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE, "%u × %u pixels: profiles by edges are captured from up to %u", s->width, s->height,
+                    (guint)FANG_MAX_PIXELS);
+        return NULL;
+    }
+    Threshold t;
+    ThresholdDef by = {def->channel, LEAF_BY_FRAME, -1.0};
+    if (!threshold_find(s, &by, &t, error))
+        return NULL;
+    Mask m = {s->width, s->height, s->width, g_try_malloc((gsize)s->width * s->height)};
+    if (!m.px) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE, "no memory to mark %u × %u pixels", s->width, s->height);
+        return NULL;
+    }
+    FangProfile *out = g_new0(FangProfile, 1);
+    out->channel = t.channel;
+    out->used = def->edges;
+    bool ok = capture(s, &t, &m, def, out, error);
+    g_free(m.px);
+    if (ok)
+        return out;
+    fang_profile_free(out);
+    return NULL;
+}

@@ -1,0 +1,185 @@
+/* Veins of a leaf, one by one: the midvein, then what leaves veins already found. */
+#include "scan/found.h"
+
+#include <math.h>
+
+#include "scan/found_parts.h"
+
+static const double band_length = 0.008;     /* of the leaf's length, and … */
+static const double band_widths = 0.75;      /* … of the vein's width: no other vein runs so near to one */
+static const double primary_start = 0.08;    /* of the length: veins that leave a primary so near to the base, and … */
+static const double primary_length = 0.22;   /* … are at least so long are primaries */
+static const double primary_share = 0.4;     /* … with as much contrast times width, compared with the midvein, */
+static const double least_contrast = 2.0, most_contrast = 8.0;  /* over noise, of what may be a vein: at sensitivities 1 and 0 */
+static const double weed_share = 0.33;       /* of the upper quartile of contrast times width in its order: the least prominent vein */
+static const double least_gain = 0.022;      /* evidence times length that makes a vein, of the leaf's length */
+enum { MOST_VEINS = 250 };
+
+FoundDef found_def_default(void) { return (FoundDef){.orders = 2, .sensitivity = 0.5}; }
+
+typedef struct {
+    const FoundDef *def;
+    FoundLeaf leaf;
+    FoundRidges *ridges;
+    FoundPaths *paths;
+    GArray *vein; /* FoundVein */
+    Vec2 base, tip;
+} Search;
+
+static Vec2 pixel_at(const Search *s, uint32_t i) { return vec2(i % s->leaf.width + 0.5, i / s->leaf.width + 0.5); }
+static FoundVein *vein_at(const Search *s, uint32_t id) { return &g_array_index(s->vein, FoundVein, id); }
+
+static void vein_clear(void *data)
+{
+    FoundVein *v = data;
+    g_free(v->p);
+    g_free(v->width);
+    g_free(v->pixel);
+}
+
+static Vec2 to_working(const Search *s, Vec2 q)
+{
+    return vec2((q.x - s->ridges->corner.x) / s->ridges->step, (s->ridges->corner.y - q.y) / s->ridges->step);
+}
+
+static Vec2 to_scan(const Search *s, Vec2 q)
+{
+    return vec2(s->ridges->corner.x + q.x * s->ridges->step, s->ridges->corner.y - q.y * s->ridges->step);
+}
+
+static double chain_length(const Search *s, const FoundVein *v)
+{
+    double sum = 0.0;
+    for (uint32_t i = 1; i < v->n_pixels; i++)
+        sum += vec_dist(pixel_at(s, v->pixel[i - 1]), pixel_at(s, v->pixel[i]));
+    return sum;
+}
+
+static double mean_width(const FoundVein *v)
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < v->n; i++)
+        sum += v->width[i];
+    return sum / v->n;
+}
+
+static double prominence(const FoundVein *v) { return v->contrast * mean_width(v); }
+
+/* Order, and whether it is a vein at all, now that it is measured. The midvein comes first. */
+static void settle(const Search *s, FoundVein *v)
+{
+    if (s->vein->len == 0)
+        return;
+    const FoundVein *mid = vein_at(s, 0), *parent = vein_at(s, v->parent);
+    bool basal = parent->order == 1 && vec_dist(pixel_at(s, v->pixel[0]), s->base) < primary_start * s->leaf.length;
+    bool long_enough = chain_length(s, v) > primary_length * s->leaf.length;
+    v->order = basal && long_enough && prominence(v) > primary_share * prominence(mid) ? 1 : (uint8_t)(parent->order + 1);
+    v->ghost = v->order > s->def->orders || v->contrast < most_contrast - (most_contrast - least_contrast) * s->def->sensitivity;
+}
+
+static void add(Search *s, FoundVein v)
+{
+    uint32_t id = s->vein->len;
+    found_trace(&s->leaf, s->ridges, &v);
+    settle(s, &v);
+    g_array_append_val(s->vein, v);
+    double band = band_length * s->leaf.length + band_widths * mean_width(&v);
+    uint32_t free_n = 0;
+    while (v.order == 1 && free_n < v.n_pixels &&
+           vec_dist(pixel_at(s, v.pixel[free_n]), s->base) < primary_start * s->leaf.length)
+        free_n++;
+    found_paths_add(s->paths, id, !v.ghost && v.order < s->def->orders, v.pixel, v.n_pixels, band, free_n);
+}
+
+/* From the base as far as there is evidence. */
+static bool find_midvein(Search *s, double least)
+{
+    FoundVein v = {.order = 1};
+    v.pixel = found_paths_between(s->paths, s->base, s->tip, &v.n_pixels, &v.gain);
+    if (!v.pixel)
+        return false;
+    if (v.gain < least || v.n_pixels < 4) {
+        g_free(v.pixel);
+        return false;
+    }
+    add(s, v);
+    return true;
+}
+
+static void find_others(Search *s, double least)
+{
+    while (s->vein->len < MOST_VEINS) {
+        FoundVein v = {0};
+        v.pixel = found_paths_best(s->paths, least, &v.n_pixels, &v.parent, &v.gain);
+        if (!v.pixel)
+            return;
+        add(s, v);
+    }
+}
+
+static int by_value(const void *a, const void *b, void *user)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Drops what is far less prominent than most of its order, with what leaves it. */
+static void weed(Search *s)
+{
+    double *all = g_new(double, s->vein->len);
+    for (uint32_t order = 2; order <= s->def->orders; order++) {
+        uint32_t n = 0;
+        for (uint32_t k = 0; k < s->vein->len; k++)
+            if (!vein_at(s, k)->ghost && vein_at(s, k)->order == order)
+                all[n++] = prominence(vein_at(s, k));
+        g_qsort_with_data(all, (gint)n, sizeof *all, by_value, NULL);
+        for (uint32_t k = 1; k < s->vein->len; k++) {
+            FoundVein *v = vein_at(s, k);
+            v->ghost = v->ghost || vein_at(s, v->parent)->ghost || (v->order == order && prominence(v) < weed_share * all[3 * n / 4]);
+        }
+    }
+    g_free(all);
+}
+
+static Drawing *draw(const Search *s)
+{
+    Drawing *d = drawing_new();
+    for (uint32_t k = 0; k < s->vein->len; k++) {
+        FoundVein *v = vein_at(s, k);
+        if (v->ghost)
+            continue;
+        Vec2 *p = g_new(Vec2, v->n);
+        double *w = g_new(double, v->n);
+        for (uint32_t i = 0; i < v->n; i++) {
+            p[i] = to_scan(s, v->p[i]);
+            w[i] = v->width[i] * s->ridges->step;
+        }
+        drawing_add(d, p, w, v->n, v->order, NULL);
+        g_free(p);
+        g_free(w);
+    }
+    return d;
+}
+
+Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error)
+{
+    Search s = {.def = def};
+    if (!found_def_check(def, error) || !found_leaf_init(&s.leaf, scan, outline, &base, error))
+        return NULL;
+    s.ridges = found_ridges_of(&s.leaf, def);
+    s.base = to_working(&s, base);
+    s.tip = to_working(&s, tip);
+    double threshold = 0.75 - 0.5 * def->sensitivity, least = least_gain * s.leaf.length;
+    s.paths = found_paths_new(&s.leaf, s.ridges, threshold, s.base);
+    s.vein = g_array_new(FALSE, FALSE, sizeof(FoundVein));
+    g_array_set_clear_func(s.vein, vein_clear);
+    if (find_midvein(&s, 3.0 * least))
+        find_others(&s, least);
+    weed(&s);
+    Drawing *d = draw(&s);
+    g_array_free(s.vein, TRUE);
+    found_paths_free(s.paths);
+    found_ridges_free(s.ridges);
+    found_leaf_clear(&s.leaf);
+    return d;
+}

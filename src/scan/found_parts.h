@@ -1,0 +1,80 @@
+/* Parts of the search for veins (found.h); private to found_*.c. Everything here is in working pixels, y down, pixel centres at halves. */
+#ifndef SCAN_FOUND_PARTS_H
+#define SCAN_FOUND_PARTS_H
+
+#include "scan/found.h"
+
+/* The leaf at working resolution. */
+typedef struct {
+    const Scan *scan;
+    uint32_t width, height;
+    double x0, y0;       /* upper left corner in the scan, pixels, y down */
+    double step;         /* pixels of the scan to one of these */
+    double length;       /* longer side of the outline's box */
+    uint32_t pad;        /* pixels around the outline's box */
+    uint8_t *inside;     /* [height][width] 1 in the blade */
+    uint8_t *deep;       /* 1 where a ridge is none of the border's */
+    uint32_t n_planes;   /* 1 or 3 */
+    GreyImage *plane[3]; /* illumination evened, 0 outside, veins of either polarity */
+} FoundLeaf;
+
+/* base: where veins run together, y-up pixels of the scan; NULL: not known. */
+bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const Vec2 *base, GError **error);
+void found_leaf_clear(FoundLeaf *l);
+
+/* One pass of the filter over an image at one width. */
+typedef struct {
+    GreyImage *best;     /* contrast of the best direction, 0 where negative */
+    GreyImage *other;    /* the same for the other polarity */
+    uint8_t *direction;  /* 0 … 15, of the best */
+    GreyImage *along[8]; /* NULL: not wanted */
+} FoundLines;
+
+enum { FOUND_DIRECTIONS = 16, FOUND_MOVES = 8 };
+
+/* half: half the ridge's width; reach: sigma of the average along the line. */
+void found_lines(const FoundLeaf *l, const GreyImage *in, double half, double reach, bool along, FoundLines *out);
+void found_lines_clear(FoundLines *f);
+
+/* The value below which `share` of the pixels in the blade's depth lie. */
+double found_quantile(const FoundLeaf *l, const GreyImage *g, double share);
+
+/* Mixes the planes into one in which veins are bright and stand out most. *bright: whether they are lighter in grey. */
+GreyImage *found_mix(const FoundLeaf *l, bool *bright);
+
+bool found_def_check(const FoundDef *def, GError **error);
+FoundRidges *found_ridges_of(const FoundLeaf *l, const FoundDef *def);
+
+/* --- paths --- */
+
+typedef struct {
+    Vec2 *p;
+    double *width;
+    uint32_t n;
+    uint32_t parent;  /* index of the vein it leaves; its own: none */
+    uint8_t order;
+    bool ghost;       /* looked at and dismissed; keeps others off its place */
+    double gain, contrast; /* evidence; mean contrast over noise */
+    uint32_t *pixel, n_pixels;
+} FoundVein;
+
+typedef struct FoundPaths FoundPaths;
+
+/* base, in working pixels: around it steps cost little, as veins run together there. */
+FoundPaths *found_paths_new(const FoundLeaf *l, const FoundRidges *r, double threshold, Vec2 base);
+void found_paths_free(FoundPaths *p);
+
+/* Cheapest path between two points, from the first on as far as there is evidence for it; *gain is that evidence, working pixels. Before any other. */
+uint32_t *found_paths_between(FoundPaths *p, Vec2 from, Vec2 to, uint32_t *n, double *gain);
+
+/* Makes pixels those of a vein, which no path crosses. From an open one paths may set out, in any direction from the first free_n pixels, from others
+ * not back along it; a band around it counts for no other. */
+void found_paths_add(FoundPaths *p, uint32_t id, bool open, const uint32_t *pixel, uint32_t n, double band, uint32_t free_n);
+
+/* The path with most evidence that leaves an open vein, *id; from the vein on. NULL when none gathers more than `least`. */
+uint32_t *found_paths_best(FoundPaths *p, double least, uint32_t *n, uint32_t *id, double *gain);
+
+/* Smooth points at even steps along the ridge, widths measured. */
+void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v);
+
+#endif
