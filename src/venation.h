@@ -92,6 +92,9 @@ VEN_API char *ven_leaf_record(const VenLeaf *leaf);
 /* Why the run ended, in words, and how many sources were given up because no vein could reach them (`given_up` may be NULL). */
 VEN_API const char *ven_leaf_end(const VenLeaf *leaf, uint64_t *given_up);
 
+/* Of a leaf from a scan: the part of its outline that runs along the edge of the image, where the leaf is cut off; 0 … 1. */
+VEN_API double ven_leaf_cut_off(const VenLeaf *leaf);
+
 /* The network. Arrays belong to the leaf. */
 VEN_API uint32_t ven_leaf_nodes(const VenLeaf *leaf);
 VEN_API uint32_t ven_leaf_edges(const VenLeaf *leaf);

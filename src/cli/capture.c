@@ -67,18 +67,26 @@ static char *leaf_name(const Capture *c, guint32 leaf)
     return c->args->each ? g_strdup_printf("%s_%u", c->run.name, leaf) : g_strdup(c->run.name);
 }
 
-/* Captures all leaves and writes each as soon as it is known; the last one stays for the summary and the record. */
+static gboolean capture_leaf(Capture *c, guint32 leaf, GError **error)
+{
+    Run *run = &c->run;
+    VenOptions how = {.threads = (unsigned)run->threads};
+    char *number = g_strdup_printf("%u", leaf);
+    gboolean ok = !c->args->each || run_set(run, "scan.leaf", number, error);
+    ven_leaf_free(run->leaf);
+    run->leaf = ok ? ven_grow(run->params, run->seed, &how, error) : NULL;
+    g_free(number);
+    return run->leaf != NULL;
+}
+
+/* Writes the first leaf, which is there, and captures and writes the others; the last one stays for the summary and the record. */
 static gboolean write_leaves(Run *run, const char *dir, gpointer user, GError **error)
 {
     Capture *c = user;
     gboolean ok = TRUE;
     for (guint32 i = 1; ok && i <= c->leaves; i++) {
-        char *name = leaf_name(c, i), *number = g_strdup_printf("%u", i);
-        VenOptions how = {.threads = (unsigned)run->threads};
-        ven_leaf_free(run->leaf);
-        run->leaf = !c->args->each || run_set(run, "scan.leaf", number, error) ? ven_grow(run->params, run->seed, &how, error) : NULL;
-        ok = run->leaf && ven_write(run->leaf, dir, name, error) && ven_write_capture(run->leaf, dir, name, error);
-        g_free(number);
+        char *name = leaf_name(c, i);
+        ok = (i == 1 || capture_leaf(c, i, error)) && ven_write(run->leaf, dir, name, error) && ven_write_capture(run->leaf, dir, name, error);
         g_free(name);
     }
     return ok;
@@ -109,7 +117,7 @@ static int carry_out(Capture *c)
     if (c->args->table)
         return print_table(c);
     c->leaves = c->args->each ? ven_scan_leaves(run->params, &error) : 1;
-    if (c->leaves == 0)
+    if (c->leaves == 0 || !capture_leaf(c, 1, &error))
         return run_report(error, TRUE);
     int status = run_begin(run);
     if (status == 0)

@@ -254,6 +254,8 @@ void run_summarise(const Run *run, const char *what)
     fprintf(stderr, "%s: %s, %.1f s\n", title && *title ? title : run->name, what, seconds);
     fprintf(stderr, "%s: %u file%s, %.1f MB\n", dir, output_files(run->output), cli_s(output_files(run->output)),
             (double)output_bytes(run->output) * 1e-6);
+    if (run->leaf && ven_leaf_cut_off(run->leaf) > 0.002)
+        fprintf(stderr, "the leaf touches the edge of the image: %.1f %% of its outline is that edge\n", 100.0 * ven_leaf_cut_off(run->leaf));
     if (output_stale(run->output))
         fprintf(stderr, "%s: %u more files there begin with %s, from other runs\n", dir, output_stale(run->output), run->name);
     g_free(dir);

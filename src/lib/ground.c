@@ -219,6 +219,21 @@ static gboolean find_veins(Ground *g, const Params *p, GError **error)
 
 /* ---- all of it ---- */
 
+/* How much of an outline in pixels lies on the edge of the image. */
+static double along_edge(const Polygon *p, const Scan *scan)
+{
+    const double near = 1.0;
+    Box2 inner = {near, near, scan->width - near, scan->height - near};
+    double whole = 0.0, edge = 0.0;
+    for (uint32_t i = 0; i < p->n; i++) {
+        Vec2 a = p->v[i], b = p->v[(i + 1) % p->n];
+        bool out = (MAX(a.x, b.x) <= inner.x0 || MIN(a.x, b.x) >= inner.x1 || MAX(a.y, b.y) <= inner.y0 || MIN(a.y, b.y) >= inner.y1);
+        whole += vec_dist(a, b);
+        edge += out ? vec_dist(a, b) : 0.0;
+    }
+    return edge / whole;
+}
+
 static gboolean find_outline(Ground *g, const Params *p, GError **error)
 {
     bool given = *params_text(p, PARAM_OUTLINE_PATH) || *params_text(p, PARAM_OUTLINE_FILE);
@@ -238,6 +253,8 @@ static gboolean fill(Ground *g, const Params *p, bool veins, GError **error)
         return FALSE;
     if (g->scan)
         g->to_scan = to_pixels(g->base, g->tip, g->scan->height);
+    if (g->profile || g->fang)
+        g->cut_off = along_edge(g->profile ? g->profile->outline : g->fang->outline, g->scan);
     if (!read_back(g, p, error))
         return FALSE;
     if (!veins)

@@ -19,6 +19,7 @@ typedef struct {
     Profile *profile;        /* by threshold; NULL when [outline] gave the margin */
     Threshold threshold;
     FangProfile *fang;       /* by edges */
+    double cut_off;          /* part of the outline that runs along the edge of the image, where the leaf goes on */
 } Ground;
 
 /* Counted references, as the frames of a run share it. `veins`: drawn ones are read, others looked for in the scan. NULL with an error that names

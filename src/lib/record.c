@@ -114,6 +114,7 @@ static void scan_facts(GString *s, const Ground *g)
     Vec2 from = affine_apply(&g->to_scan, vec2(0.0, 0.0)), to = affine_apply(&g->to_scan, vec2(0.0, 1.0));
     g_string_append_printf(s, "  \"scan\": {\n    \"width\": %u,\n    \"height\": %u,\n", g->scan->width, g->scan->height);
     number(s, "mm_per_pixel", g->scan->mm_per_pixel, ",\n");
+    number(s, "cut_off", g->cut_off, ",\n");
     if (g->profile) {
         key(s, "    ", "channel");
         export_json_string(s, channel_name(g->threshold.channel));

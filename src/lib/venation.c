@@ -287,6 +287,8 @@ const char *ven_leaf_end(const VenLeaf *leaf, uint64_t *given_up)
     return end_reason_text(leaf->counts.end);
 }
 
+double ven_leaf_cut_off(const VenLeaf *leaf) { return leaf->ground ? leaf->ground->cut_off : 0.0; }
+
 /* ---- the network ---- */
 
 uint32_t ven_leaf_nodes(const VenLeaf *leaf) { return leaf->net->n_nodes; }

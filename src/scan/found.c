@@ -19,6 +19,7 @@ FoundDef found_def_default(void) { return (FoundDef){.orders = 2, .sensitivity =
 
 typedef struct {
     const FoundDef *def;
+    uint32_t orders; /* looked for: at least 2, as secondaries must be known lest they pass for primaries */
     FoundLeaf leaf;
     FoundRidges *ridges;
     FoundPaths *paths;
@@ -74,7 +75,7 @@ static void settle(const Search *s, FoundVein *v)
     bool basal = parent->order == 1 && vec_dist(pixel_at(s, v->pixel[0]), s->base) < primary_start * s->leaf.length;
     bool long_enough = chain_length(s, v) > primary_length * s->leaf.length;
     v->order = basal && long_enough && prominence(v) > primary_share * prominence(mid) ? 1 : (uint8_t)(parent->order + 1);
-    v->ghost = v->order > s->def->orders || v->contrast < most_contrast - (most_contrast - least_contrast) * s->def->sensitivity;
+    v->ghost = v->order > s->orders || v->contrast < most_contrast - (most_contrast - least_contrast) * s->def->sensitivity;
 }
 
 static void add(Search *s, FoundVein v)
@@ -84,11 +85,10 @@ static void add(Search *s, FoundVein v)
     settle(s, &v);
     g_array_append_val(s->vein, v);
     double band = band_length * s->leaf.length + band_widths * mean_width(&v);
-    uint32_t free_n = 0;
-    while (v.order == 1 && free_n < v.n_pixels &&
-           vec_dist(pixel_at(s, v.pixel[free_n]), s->base) < primary_start * s->leaf.length)
-        free_n++;
-    found_paths_add(s->paths, id, !v.ghost && v.order < s->def->orders, v.pixel, v.n_pixels, band, free_n);
+    uint32_t near = 0; /* what leaves here may be a primary */
+    while (!v.ghost && v.order == 1 && near < v.n_pixels && vec_dist(pixel_at(s, v.pixel[near]), s->base) < primary_start * s->leaf.length)
+        near++;
+    found_paths_add(s->paths, id, v.pixel, v.n_pixels, band, !v.ghost && v.order < s->orders ? v.n_pixels : near, near);
 }
 
 /* From the base as far as there is evidence. */
@@ -127,7 +127,7 @@ static int by_value(const void *a, const void *b, void *user)
 static void weed(Search *s)
 {
     double *all = g_new(double, s->vein->len);
-    for (uint32_t order = 2; order <= s->def->orders; order++) {
+    for (uint32_t order = 2; order <= s->orders; order++) {
         uint32_t n = 0;
         for (uint32_t k = 0; k < s->vein->len; k++)
             if (!vein_at(s, k)->ghost && vein_at(s, k)->order == order)
@@ -146,7 +146,7 @@ static Drawing *draw(const Search *s)
     Drawing *d = drawing_new();
     for (uint32_t k = 0; k < s->vein->len; k++) {
         FoundVein *v = vein_at(s, k);
-        if (v->ghost)
+        if (v->ghost || v->order > s->def->orders)
             continue;
         Vec2 *p = g_new(Vec2, v->n);
         double *w = g_new(double, v->n);
@@ -163,7 +163,7 @@ static Drawing *draw(const Search *s)
 
 Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error)
 {
-    Search s = {.def = def};
+    Search s = {.def = def, .orders = MAX(def->orders, 2)};
     if (!found_def_check(def, error) || !found_leaf_init(&s.leaf, scan, outline, &base, error))
         return NULL;
     s.ridges = found_ridges_of(&s.leaf, def);

@@ -34,8 +34,8 @@ FoundRidges *found_ridges(const Scan *s, const Polygon *outline, const FoundDef 
 void found_ridges_free(FoundRidges *r);
 
 /* Primaries, secondaries … of the leaf whose outline (y-up pixels, scan/profile.h) is given, as a first draft to be corrected by hand: orders are set, widths
- * measured. The midvein first: the cheapest path from base to tip; then other primaries and secondaries, one by one the paths that leave veins already
- * found and gather most evidence. Veins start at the parent. EMPTY drawing (not NULL) when nothing stands out. Memory: about 30 float images of
+ * measured. The midvein first: the cheapest path from base to tip, as far as there is evidence; then, one by one, the paths that leave veins already
+ * found and gather most evidence. Long prominent ones from near the base are primaries too. Veins start at the parent. EMPTY drawing (not NULL) when nothing stands out. Memory: about 30 float images of
  * at most 1.9 million pixels, and half as much again at worst, whatever the scan's size. SCAN_ERROR_VALUE for settings that can't be used, SCAN_ERROR_SIZE for
  * an outline shorter than 16 pixels or off the image. */
 Drawing *found_veins(const Scan *s, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error);

@@ -102,7 +102,8 @@ static void mean_colour(const FoundLeaf *l, const uint8_t *of, uint8_t want, dou
         mean[c] /= MAX(count, 1.0);
 }
 
-/* Holes that the outline doesn't know of show the ground: where it shows clearly over some width, and around that where it shows more than the blade. */
+/* Holes that the outline doesn't know of show the ground: where it shows clearly over some width, and around that where it shows
+ * more than the blade does. */
 static void take_out_holes(FoundLeaf *l, const Vec2 *base)
 {
     gsize n = (gsize)l->width * l->height;
@@ -215,7 +216,8 @@ bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const 
     *l = (FoundLeaf){.scan = s, .n_planes = s->channels < 3 ? 1 : 3};
     if (!(longer >= 16.0) || b.x0 >= s->width || b.y0 >= s->height || b.x1 <= 0.0 || b.y1 <= 0.0) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE,
-                    "no veins can be found: the outline reaches from (%g, %g) to (%g, %g) in an image of %u × %u pixels; it must be 16 pixels long at least",
+                    "no veins can be found: the outline reaches from (%g, %g) to (%g, %g) in an image of %u × %u pixels; it must be 16 "
+                    "pixels long at least",
                     b.x0, b.y0, b.x1, b.y1, s->width, s->height);
         return false;
     }

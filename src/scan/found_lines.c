@@ -11,7 +11,8 @@ static const double smoothing = 0.6;       /* sigma before all, in half widths *
 static const double line_reach = 2.0;      /* where averages along the line are cut off, sigmas */
 
 /* Directions that a path's step 0, 26.6, 45, 63.4 … degrees agrees with. */
-static const uint8_t step_directions[FOUND_MOVES][3] = {{15, 0, 1}, {2, 2, 3}, {3, 4, 5}, {5, 6, 6}, {7, 8, 9}, {10, 10, 11}, {11, 12, 13}, {13, 14, 14}};
+static const uint8_t step_directions[FOUND_MOVES][3] = {{15, 0, 1}, {2, 2, 3},   {3, 4, 5},    {5, 6, 6},
+                                                         {7, 8, 9}, {10, 10, 11}, {11, 12, 13}, {13, 14, 14}};
 
 /* Columns from lo to hi - 1 of each row. */
 typedef struct {
@@ -57,7 +58,8 @@ static void spans_clear(Spans *s)
 
 static inline int32_t nearest(double v) { return (int32_t)floor(v + 0.5); }
 
-/* Weighted mean along the line through each pixel; samples are taken at whole pixels, a symmetric set of them. What lies off the image counts as 0. */
+/* Weighted mean along the line through each pixel; samples are taken at whole pixels, a symmetric set of them. What lies off the image
+ * counts as 0. */
 static void average_along(const GreyImage *in, const Spans *s, Vec2 along, double reach, double spacing, GreyImage *out)
 {
     int32_t w = (int32_t)in->width, h = (int32_t)in->height, n = (int32_t)ceil(line_reach * reach / spacing);
@@ -112,7 +114,8 @@ void found_lines(const FoundLeaf *l, const GreyImage *in, double half, double re
     GreyImage *smooth = convolve(in, k, k), *mean = grey_image_new(l->width, l->height);
     double side = 2.0 * half + 0.3;
     Spans spans = spans_new(l, 0), wide = spans_new(l, (int32_t)ceil(side) + 1);
-    *out = (FoundLines){grey_image_new(l->width, l->height), grey_image_new(l->width, l->height), g_new0(uint8_t, (gsize)l->width * l->height), {NULL}};
+    *out = (FoundLines){.best = grey_image_new(l->width, l->height), .other = grey_image_new(l->width, l->height)};
+    out->direction = g_new0(uint8_t, (gsize)l->width * l->height);
     for (uint32_t m = 0; along && m < FOUND_MOVES; m++)
         out->along[m] = grey_image_new(l->width, l->height);
     for (uint32_t d = 0; d < FOUND_DIRECTIONS; d++) {

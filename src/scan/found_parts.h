@@ -67,11 +67,11 @@ void found_paths_free(FoundPaths *p);
 /* Cheapest path between two points, from the first on as far as there is evidence for it; *gain is that evidence, working pixels. Before any other. */
 uint32_t *found_paths_between(FoundPaths *p, Vec2 from, Vec2 to, uint32_t *n, double *gain);
 
-/* Makes pixels those of a vein, which no path crosses. From an open one paths may set out, in any direction from the first free_n pixels, from others
- * not back along it; a band around it counts for no other. */
-void found_paths_add(FoundPaths *p, uint32_t id, bool open, const uint32_t *pixel, uint32_t n, double band, uint32_t free_n);
+/* Makes pixels those of a vein, which no path crosses. From the first open_n paths may set out: in any direction from the first free_n, from others
+ * not back along it. A band around it counts for no other. */
+void found_paths_add(FoundPaths *p, uint32_t id, const uint32_t *pixel, uint32_t n, double band, uint32_t open_n, uint32_t free_n);
 
-/* The path with most evidence that leaves an open vein, *id; from the vein on. NULL when none gathers more than `least`. */
+/* The path with most evidence that leaves a vein, *id; from the vein on. NULL when none gathers more than `least`. */
 uint32_t *found_paths_best(FoundPaths *p, double least, uint32_t *n, uint32_t *id, double *gain);
 
 /* Smooth points at even steps along the ridge, widths measured. */

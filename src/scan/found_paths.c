@@ -41,7 +41,6 @@ struct FoundPaths {
     uint8_t *unseen;    /* [states] length of the gap it is in, cells */
     float *gain;        /* [states] evidence so far */
     uint32_t cost[256][3];
-    GArray *open; /* bool by vein */
     FoundQueue queue;
 };
 enum { EVERYBODY = 255 };
@@ -88,7 +87,6 @@ FoundPaths *found_paths_new(const FoundLeaf *l, const FoundRidges *r, double thr
     p->owner = g_new0(uint8_t, states);
     p->unseen = g_new0(uint8_t, states);
     p->gain = g_new0(float, states);
-    p->open = g_array_new(FALSE, TRUE, sizeof(bool));
     found_queue_init(&p->queue);
     memset(p->distance, 0xFF, states * sizeof *p->distance);
     read_ridges(p, l, r, base);
@@ -113,7 +111,6 @@ void found_paths_free(FoundPaths *p)
     g_free(p->owner);
     g_free(p->unseen);
     g_free(p->gain);
-    g_array_free(p->open, TRUE);
     found_queue_clear(&p->queue);
     g_free(p);
 }
@@ -294,18 +291,15 @@ static uint32_t cell_of(const FoundPaths *p, uint32_t pixel)
     return (pixel / p->leaf_width - p->y0) / CELL * p->width + (pixel % p->leaf_width - p->x0) / CELL;
 }
 
-void found_paths_add(FoundPaths *p, uint32_t id, bool open, const uint32_t *pixel, uint32_t n, double band, uint32_t free_n)
+void found_paths_add(FoundPaths *p, uint32_t id, const uint32_t *pixel, uint32_t n, double band, uint32_t open_n, uint32_t free_n)
 {
     uint8_t *changed = g_new0(uint8_t, (gsize)p->width * p->height);
-    if (p->open->len <= id)
-        g_array_set_size(p->open, id + 1);
-    g_array_index(p->open, bool, id) = open;
     for (uint32_t k = 0; k < n; k++) {
         mark_disc(p, cell_of(p, pixel[k]), 1.0, (uint8_t)(id + 1), p->wall, changed);
         mark_disc(p, cell_of(p, pixel[k]), band / CELL, (uint8_t)(id + 1), p->band, changed);
     }
     renew(p, changed);
-    for (uint32_t k = 0; open && k < n; k++) {
+    for (uint32_t k = 0; k < open_n; k++) {
         uint32_t cell = cell_of(p, pixel[k]), a = cell_of(p, pixel[k >= 4 ? k - 4 : 0]), b = cell_of(p, pixel[MIN(n - 1, k + 4)]);
         Vec2 heading = vec2((double)(b % p->width) - (double)(a % p->width), (double)(b / p->width) - (double)(a / p->width));
         for (uint32_t way = 0; way < WAYS && p->wall[cell] == id + 1; way++)

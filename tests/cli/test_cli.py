@@ -7,6 +7,7 @@ Needs the standard library alone. What can't be tested here is skipped with its 
 """
 import fcntl
 import json
+import math
 import os
 import pty
 import re
@@ -19,6 +20,7 @@ import sys
 import tempfile
 import termios
 import time
+import zlib
 
 VENATION = os.path.abspath(sys.argv[1]) if len(sys.argv) == 2 else sys.exit(__doc__)
 TIMEOUT = 120
@@ -745,6 +747,113 @@ def test_shape():
         raise AssertionError((again, record))
     for name in files("a"):
         same(open(f"a/{name}", "rb").read(), open(f"b/{name}", "rb").read(), name)
+
+
+def png(name, width, height, pixel):
+    """Writes an RGB image; pixel(x, y) gives its colour."""
+    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in pixel(x, y)) for y in range(height))
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    with open(name, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(rows, 1)) + chunk(b"IEND", b""))
+    return name
+
+
+def leaf_colour(x, y, x0=60.0, y0=100.0, a=45.0, b=80.0):
+    """An elliptic leaf with light veins, its base below."""
+    u, v = (x + 0.5 - x0) / a, (y + 0.5 - y0) / b
+    if u * u + v * v > 1:
+        return (250, 250, 248)
+    vein = abs(x + 0.5 - x0) < 1.5 or abs((y - y0 + abs(x + 0.5 - x0)) % 24 - 12) < 1.0
+    return (150, 190, 110) if vein else (60 + x % 3, 110 + y % 3, 40)
+
+
+CAPTURE = ("--size", "64", "--set", "growth.final_length=120", "--set", "growth.initial_length=40")
+
+
+def test_capture():
+    png("leaf.png", 120, 200, leaf_colour)
+    done = run("capture", "leaf.png", *CAPTURE, "--json")
+    same(done.status, 0)
+    record = json.loads(done.out)
+    area = math.pi * 45 * 80
+    if abs(record["scan"]["area"] / area - 1) > 0.005:
+        raise AssertionError(record["scan"])
+    wanted = {"leaf.ini", "leaf.json", "leaf.svg", "leaf.graphml", "leaf_drawing.svg", "leaf_scan.png", "leaf_base_color.png"}
+    if not wanted <= set(files("out/leaf")):
+        raise AssertionError(wanted - set(files("out/leaf")))
+    same(open("out/leaf/leaf_scan.png", "rb").read(), open("leaf.png", "rb").read(), "scan")
+    # equal bytes with any number of threads
+    same(run("capture", "leaf.png", *CAPTURE, "-o", "again", "--threads", "2").status, 0)
+    for name in files("again"):
+        same(open(f"again/{name}", "rb").read(), open(f"out/leaf/{name}", "rb").read(), name)
+    # the folder can be moved, and grown and shaped from
+    os.rename("out/leaf", "moved")
+    grown = run("grow", "moved/leaf.ini", "--maps", "base_color", "-o", "grown", "--json")
+    same(grown.status, 0)
+    if json.loads(grown.out)["network"]["nodes"] <= record["network"]["nodes"]:
+        raise AssertionError("nothing grew")
+    same(run("shape", "moved/leaf.ini", "--formats", "glb", "-o", "shaped").status, 0)
+    if "leaf.glb" not in files("shaped"):
+        raise AssertionError(files("shaped"))
+    # all at once
+    same(run("shape", "leaf.png", *CAPTURE, "--formats", "glb", "-o", "once").status, 0)
+    if "leaf.glb" not in files("once"):
+        raise AssertionError(files("once"))
+
+
+def test_capture_ways():
+    png("leaf.png", 120, 200, leaf_colour)
+    png("two.png", 220, 200, lambda x, y: leaf_colour(x, y) if x < 110 else leaf_colour(x, y, 165, 100, 35, 60))
+    for more in (("--method", "fang"), ("--set", "scan.petiole=keep"), ("--set", "scan.base=60,180", "--set", "scan.tip=60,20"),
+                 ("--set", "scan.veins=none"), ("--set", "scan.texture=no"), ("--back", "leaf.png")):
+        done = run("capture", "leaf.png", *CAPTURE, "--maps", "base_color", "-o", "x", *more)
+        if done.status:
+            raise AssertionError((more, done.err))
+    done = run("capture", "two.png", *CAPTURE, "--maps", "none", "--each")
+    same((done.status, "2 leaves captured" in done.err), (0, True))
+    same([f"two_{i}.ini" in files("out/two") for i in (1, 2, 3)], [True, True, False])
+    # drawn veins, from an SVG file and from lines of text
+    write("veins.svg", '<svg xmlns="http://www.w3.org/2000/svg"><g id="veins"><path d="M60,178 L60,40" stroke-width="3"/>'
+          '<path d="M60,120 L30,100"/></g></svg>')
+    write("veins.txt", "60 178\n60 40\n\n60 120\n30 100\n")
+    for drawing in ("veins.svg", "veins.txt"):
+        done = run("capture", "leaf.png", *CAPTURE, "--maps", "none", "--drawing", drawing, "--set", "scan.base=60,180", "--set",
+                   "scan.tip=60,20", "--json", "-o", drawing + ".d")
+        same(done.status, 0)
+        same((json.loads(done.out)["scan"]["veins"], json.loads(done.out)["scan"]["veins_from"]), (2, "drawing"))
+    table = run("capture", "leaf.png", "--table")
+    rows = [line.split() for line in table.out.splitlines()[3:]]
+    same([row[0] for row in rows], ["1", "2", "4", "8", "16"])
+    for row in rows: # fewer nodes with more tolerance, and with larger squares
+        nodes = [int(n) for n in row[3:]]
+        same(nodes, sorted(nodes, reverse=True))
+    same([int(row[3]) for row in rows], sorted((int(row[3]) for row in rows), reverse=True))
+
+
+def test_capture_refuses():
+    png("leaf.png", 120, 200, leaf_colour)
+    whole = open("leaf.png", "rb").read()
+    for name, data, *parts in (("noise.png", b"no image at all", "is not a PNG, JPEG or TIFF image"), ("empty.png", b"", "is empty"),
+                               ("cut.png", whole[:len(whole) // 2], "ends too early")):
+        with open(name, "wb") as file:
+            file.write(data)
+        check_refused(run("capture", name), 3, name, *parts)
+    check_refused(run("capture", "none.png"), 3, "none.png", "No such file")
+    for name, size, colour in (("one.png", 1, 0), ("black.png", 50, 0), ("white.png", 50, 255)):
+        png(name, size, size, lambda x, y, c=colour: (c, c, c))
+        check_refused(run("capture", name), 3, name, "no leaf")
+    check_refused(run("capture", "leaf.png", "--method", "magic"), 3, "--method magic", "contour or fang")
+    check_refused(run("capture", "leaf.png", "--set", "scan.leaf=2"), 3, "leaf.png", "there is 1 in the image")
+    write("nothing.svg", '<svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>')
+    check_refused(run("capture", "leaf.png", "--drawing", "nothing.svg"), 3, "nothing.svg")
+    write("outside.svg", '<svg xmlns="http://www.w3.org/2000/svg"><g id="veins"><path id="stray" d="M5,5 L100,5"/></g></svg>')
+    check_refused(run("capture", "leaf.png", "--drawing", "outside.svg"), 3, "outside.svg", "stray")
+    same(files("out") if os.path.isdir("out") else [], [])
+    png("edge.png", 120, 200, lambda x, y: leaf_colour(x, y, 60, 100, 80, 80))
+    done = run("capture", "edge.png", *CAPTURE, "--maps", "none")
+    same((done.status, "touches the edge of the image" in done.err), (0, True))
 
 
 def test_endless_file():

@@ -64,10 +64,10 @@ static Scan *painted(const Polygon *outline, const double *cover, uint32_t chann
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
             for (uint32_t c = 0; c < channels; c++) {
-                double v = 245.0, i = (double)y * W + x;
+                double v = 245.0, i = (double)y * W + x; /* alpha, if any, changes nothing */
                 uint8_t *px = (uint8_t *)s->px + ((gsize)y * W + (gsize)x) * channels + c;
                 if (polygon_contains(outline, vec2(x + 0.5, H - y - 0.5)))
-                    v = blade[c] + 0.03 * x + contrast * mix[c] * (cover ? cover[(H - 1 - y) * W + x] : 0.0) + 2.0 * noise * triangular(40 + c, (uint64_t)i);
+                    v = blade[c % 3] + 0.03 * x + contrast * mix[c % 3] * (cover ? cover[(H - 1 - y) * W + x] : 0.0) + 2.0 * noise * triangular(40 + c, (uint64_t)i);
                 *px = (uint8_t)CLAMP(v + 0.5, 0.0, 255.0);
             }
     return s;
@@ -332,7 +332,7 @@ static void test_refused(void)
     FoundDef def = good;
     def.sensitivity = 1.5;
     check_refused(&def, outline, SCAN_ERROR_VALUE, "1.5");
-    def.sensitivity = NAN;
+    def.sensitivity = (double)NAN;
     check_refused(&def, outline, SCAN_ERROR_VALUE, "between 0 and 1");
     def = good;
     def.orders = 0;
