@@ -8,6 +8,7 @@
 static const double thinnest = 0.0018, thickest = 0.018; /* widths looked for, of the leaf's length */
 static const double least_half = 0.9;        /* working pixels */
 static const double noise_quantile = 0.85;   /* of lines of the other polarity */
+static const double least_noise = 0.25 / 255;  /* of the whole scale: what rounding to 8 bits leaves in a flat image */
 static const double even_odds = 2.2;         /* contrast over noise at strength 0.5 */
 static const double reach_length = 0.007, reach_widths = 2.0; /* sigma along the line: of the leaf's length, and half widths */
 
@@ -23,8 +24,7 @@ static inline float strength_of(double z)
 static void take(const FoundLeaf *l, FoundRidges *r, FoundLines *f, double half, GreyImage *contrast, double *noise)
 {
     *noise = found_quantile(l, f->other, noise_quantile);
-    if (!(*noise > 0.0))
-        *noise = 1e-6;
+    *noise = MAX(*noise, least_noise);
     for (gsize i = 0; i < (gsize)l->width * l->height; i++) {
         if (!l->deep[i] || !(f->best->px[i] > 0.0f))
             continue;

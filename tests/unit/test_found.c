@@ -273,7 +273,7 @@ static void test_palmate(void)
 static void test_blank(void)
 {
     Polygon *outline = ellipse();
-    for (uint32_t k = 1; k < 4; k++) {
+    for (uint32_t k = 0; k < 4; k++) {
         Scan *s = painted(outline, NULL, k % 2 ? 3 : 1, 0.0, 3.0 * k);
         FoundDef def = found_def_default();
         def.sensitivity = k == 3 ? 0.8 : 0.5;
