@@ -123,7 +123,11 @@ static void put_skin(GString *s, const Model *m, GlbBuffer *b)
                            glb_add_floats(b, matrix, r->n_joints, 16, FALSE, GLB_NO_TARGET), first - 1);
     for (uint32_t j = 0; j < r->n_joints; j++)
         g_string_append_printf(s, "%s%u", j > 0 ? "," : "", first + j);
-    g_string_append(s, "]}]");
+    g_string_append(s, "],\"extras\":{\"worst_loss\":"); /* of the weights, for want of room: see shape/rig.h */
+    export_number(s, r->worst_loss);
+    g_string_append(s, ",\"mean_loss\":");
+    export_number(s, r->mean_loss);
+    g_string_append(s, "}}]");
     g_free(matrix);
 }
 

@@ -72,7 +72,7 @@ static double radius_at(const Tube *t, Vec3 p)
     return radius;
 }
 
-/* The petiole counts as order 1 of no sequence. */
+/* A tube of no sequence is a petiole and counts as order 1. */
 static Extra vein_extra(const Model *m, const uint32_t *tube, uint32_t i)
 {
     if (tube == NULL)

@@ -40,6 +40,25 @@ static void put_string(GString *s, const char *text)
     g_string_append_c(s, '"');
 }
 
+/* Which vein it is: "// vein4: L2, order 2, leaves midrib". */
+static void put_vein_comment(const Model *m, const Tube *t, uint32_t index, GString *s)
+{
+    const Skeleton *sk = m->skeleton;
+    g_string_append_printf(s, "// vein%u: ", index);
+    if (sk == NULL || t->sequence >= sk->n_sequences) {
+        g_string_append(s, "petiole\n");
+        return;
+    }
+    const Sequence *q = &sk->sequence[t->sequence];
+    model_put_line(s, q->name);
+    g_string_append_printf(s, ", order %u", q->order);
+    if (q->parent != NO_PARENT) {
+        g_string_append(s, ", leaves ");
+        model_put_line(s, sk->sequence[q->parent].name);
+    }
+    g_string_append(s, t->petiole > 0 ? ", with the petiole\n" : "\n");
+}
+
 static void put_sweep(const Tube *t, uint32_t index, Sink *out)
 {
     g_string_append_printf(out->text, "#declare vein%u = sphere_sweep {\n    linear_spline,\n    %u,\n", index, t->n);
@@ -67,8 +86,10 @@ static uint32_t put_veins(const Model *m, Sink *out)
 {
     uint32_t n = 0;
     for (uint32_t q = 0; q < m->n_tubes; q++)
-        if (is_sweep(&m->tubes[q]))
+        if (is_sweep(&m->tubes[q])) {
+            put_vein_comment(m, &m->tubes[q], n, out->text);
             put_sweep(&m->tubes[q], n++, out);
+        }
     if (n == 0)
         return 0;
     g_string_append(out->text, "#declare vein = union {\n");

@@ -182,16 +182,58 @@ char *ven_leaf_record(const VenLeaf *leaf)
     return g_string_free(s, FALSE);
 }
 
+/* The veins that carry the blade, by the names that rules of a pose call them; where each begins and how long it is in leaf lengths. */
+static void skeleton_veins(GString *s, const Skeleton *sk, double length)
+{
+    g_string_append(s, "    \"skeleton\": [");
+    for (uint32_t q = 0; q < sk->n_sequences; q++) {
+        const Sequence *v = &sk->sequence[q];
+        Vec2 at = sk->rest[sk->at[v->first]];
+        const double start[2] = {at.x / length + 0.0, at.y / length + 0.0};
+        g_string_append(s, q ? ",\n      {\"name\": " : "\n      {\"name\": ");
+        export_json_string(s, v->name);
+        g_string_append_printf(s, ", \"order\": %u, \"parent\": ", v->order);
+        if (v->parent == NO_PARENT)
+            g_string_append(s, "null");
+        else
+            export_json_string(s, sk->sequence[v->parent].name);
+        g_string_append(s, ", \"length\": ");
+        export_number(s, v->length / length);
+        g_string_append(s, ", \"start\": ");
+        list(s, start, 2, FALSE);
+        g_string_append(s, v->fictitious ? ", \"fictitious\": true}" : "}");
+    }
+    g_string_append(s, "\n    ],\n");
+}
+
+/* Part of the blade's weights that did not fit into the joints a vertex may have. */
+static void rig_facts(GString *s, const VenShape *shape)
+{
+    double worst, mean;
+    uint32_t joints;
+    if (!ven_shape_rig(shape, &joints, &worst, &mean))
+        return;
+    g_string_append_printf(s, "    \"rig\": {\n      \"joints\": %u,\n      \"worst_loss\": ", joints);
+    export_number(s, worst);
+    g_string_append(s, ",\n      \"mean_loss\": ");
+    export_number(s, mean);
+    g_string_append(s, "\n    },\n");
+}
+
 char *ven_shape_record(const VenShape *shape)
 {
-    const Surface *blade = shape->bent.blade;
+    const Surface *blade = shape->bent.blade, *veins = shape->bent.veins;
     GString *s = begin_record(shape->leaf);
     g_string_append_printf(s, ",\n  \"shape\": {\n    \"veins\": %u,\n    \"vein_nodes\": %u,\n    \"vertices\": %u,\n    \"triangles\": %u,\n",
                            shape->skeleton->n_sequences, shape->skeleton->n_nodes, blade->n_vertices, blade->n_triangles);
+    g_string_append_printf(s, "    \"vein_triangles\": %u,\n", veins ? veins->n_triangles : 0);
     number(s, "unit", shape->unit, ",\n    \"levels\": [");
     for (uint32_t i = 0; i < shape->n_levels; i++)
         g_string_append_printf(s, "%s%u", i ? ", " : "", shape->level[i].mesh->n_triangles);
-    g_string_append_printf(s, "],\n    \"hash\": \"%016" G_GINT64_MODIFIER "x\"\n  }\n}\n",
+    g_string_append(s, "],\n");
+    rig_facts(s, shape);
+    skeleton_veins(s, shape->skeleton, shape->leaf->length);
+    g_string_append_printf(s, "    \"hash\": \"%016" G_GINT64_MODIFIER "x\"\n  }\n}\n",
                            (guint64)fnv(0xCBF29CE484222325u, blade->place, sizeof *blade->place * blade->n_vertices));
     return g_string_free(s, FALSE);
 }

@@ -1,6 +1,8 @@
 /* From a venation graph to a bent leaf: skeleton, mesh, pose, membrane, vein solids (Hong 2005, chapters 6 and 7). */
 #include "lib/shape.h"
 
+#include <math.h>
+
 #include "lib/settings.h"
 
 /* What mesh.membrane may be, in the table's order. */
@@ -25,15 +27,21 @@ static Surface *flat_blade(const VenShape *s, const Mesh *mesh)
     return blade;
 }
 
+/* The tubes as a surface with uv. */
+static void dress_veins(const VenShape *s, Bent *b, const SolidDef *def)
+{
+    b->veins = solid_surface(b->tubes, b->n_tubes, def);
+    for (uint32_t i = 0; i < b->veins->n_vertices; i++)
+        b->veins->uv[i] = shape_uv(s, b->veins->uv[i]);
+}
+
 static void add_veins(const VenShape *s, Bent *b)
 {
     Vec3 *normal = g_new(Vec3, s->skeleton->n_nodes);
     for (uint32_t i = 0; i < s->skeleton->n_nodes; i++)
         normal[i] = b->pose->turn[i].z; /* the vein's own, which no crumpled triangle at the margin can flip */
     b->tubes = solid_tubes(b->pose, normal, &s->solid, &b->n_tubes);
-    b->veins = solid_surface(b->tubes, b->n_tubes, &s->solid);
-    for (uint32_t i = 0; i < b->veins->n_vertices; i++)
-        b->veins->uv[i] = shape_uv(s, b->veins->uv[i]);
+    dress_veins(s, b, &s->solid);
     g_free(normal);
 }
 
@@ -69,18 +77,30 @@ void bent_clear(Bent *b)
 
 /* ---- levels of detail ---- */
 
+/* A level has about a quarter of the triangles of the one before, at least half of them must go, and the leaf must stay a leaf. */
+static const double wanted_part = 0.25, most_part = 0.5;
+enum { LEVEL_TRIES = 6, LEAST_TRIANGLES = 24 };
+
 /* The same points of the blade in both meshes, so that a coarse leaf lies where the fine one does. */
-static Level level_of(const VenShape *s, Mesh *coarse)
+static Level level_of(const VenShape *s, Mesh *mesh, Skeleton *skeleton)
 {
-    Level l = {coarse, g_new(uint32_t, coarse->n_vertices), g_malloc_n(coarse->n_vertices, sizeof(double[3]))};
+    Level l = {mesh, skeleton, g_new(uint32_t, mesh->n_vertices), g_malloc_n(mesh->n_vertices, sizeof(double[3]))};
     MeshLocator *locator = mesh_locator_new(s->mesh);
-    for (uint32_t i = 0; i < coarse->n_vertices; i++)
-        l.triangle[i] = mesh_locate(locator, coarse->vertex[i], l.weight[i]);
+    for (uint32_t i = 0; i < mesh->n_vertices; i++)
+        l.triangle[i] = mesh_locate(locator, mesh->vertex[i], l.weight[i]);
     mesh_locator_free(locator);
     return l;
 }
 
-Surface *shape_level_blade(const VenShape *s, const Level *level, const Bent *bent)
+static void level_clear(Level *l)
+{
+    mesh_free(l->mesh);
+    skeleton_free(l->skeleton);
+    g_free(l->triangle);
+    g_free(l->weight);
+}
+
+static Surface *level_blade(const VenShape *s, const Level *level, const Bent *bent)
 {
     Surface *blade = flat_blade(s, level->mesh);
     for (uint32_t i = 0; i < blade->n_vertices; i++) {
@@ -93,6 +113,69 @@ Surface *shape_level_blade(const VenShape *s, const Level *level, const Bent *be
     return blade;
 }
 
+static uint32_t count_triangles(const Bent *b) { return b->blade->n_triangles + (b->veins ? b->veins->n_triangles : 0); }
+
+/* The thinnest tube that no other leaves; not the first, which is the midrib's. */
+static uint32_t thinnest(const Bent *b, const uint32_t *branches)
+{
+    uint32_t best = 0;
+    double least = HUGE_VAL;
+    for (uint32_t i = 1; i < b->n_tubes; i++) {
+        double r = b->tubes[i].radius[b->tubes[i].n / 2];
+        if (r <= least && branches[b->tubes[i].sequence] == 0) { /* of equals the last */
+            least = r;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Leaves out tubes until at most so many triangles are left. */
+static void thin_veins(Bent *b, const SolidDef *def, double most)
+{
+    const Sequence *sequence = b->pose->skeleton->sequence;
+    uint32_t *branches = g_new0(uint32_t, b->pose->skeleton->n_sequences), i;
+    double have = 0.0;
+    for (i = 0; i < b->n_tubes; i++) {
+        uint32_t parent = sequence[b->tubes[i].sequence].parent;
+        have += solid_tube_triangles(&b->tubes[i], def);
+        if (parent != NO_PARENT)
+            branches[parent]++;
+    }
+    while (have > most && (i = thinnest(b, branches)) > 0) {
+        uint32_t parent = sequence[b->tubes[i].sequence].parent;
+        have -= solid_tube_triangles(&b->tubes[i], def);
+        if (parent != NO_PARENT)
+            branches[parent]--;
+        solid_tube_clear(&b->tubes[i]);
+        for (b->n_tubes--; i < b->n_tubes; i++)
+            b->tubes[i] = b->tubes[i + 1];
+    }
+    g_free(branches);
+}
+
+Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent)
+{
+    const Level *l = &s->level[level - 1];
+    double quarter = 1.0;
+    Bent b = {.blade = level_blade(s, l, bent), .pose = pose_new(l->skeleton)};
+    Vec3 *normal = g_new(Vec3, l->skeleton->n_nodes);
+    for (uint32_t i = 0; i < l->skeleton->n_nodes; i++) {
+        b.pose->place[i] = b.blade->place[l->skeleton->vertex[i]];
+        normal[i] = b.blade->normal[l->skeleton->vertex[i]];
+    }
+    for (uint32_t i = 0; i < level; i++)
+        quarter *= wanted_part;
+    if (bent->veins) {
+        SolidDef def = settings_solids(s->leaf->params, s->leaf->length, sqrt(1.0 / quarter));
+        b.tubes = solid_tubes(b.pose, normal, &def, &b.n_tubes);
+        thin_veins(&b, &def, quarter * count_triangles(bent) - b.blade->n_triangles);
+        dress_veins(s, &b, &def);
+    }
+    g_free(normal);
+    return b;
+}
+
 static Mesh *mesh_skeleton(const Skeleton *sk, const MeshDef *def, GError **error)
 {
     uint32_t *node_point = g_new(uint32_t, sk->n_nodes);
@@ -103,29 +186,94 @@ static Mesh *mesh_skeleton(const Skeleton *sk, const MeshDef *def, GError **erro
     return mesh;
 }
 
-static gboolean add_levels(VenShape *s, GError **error)
+/* Veins are called what they are called in the full leaf. FALSE: the midrib is none of them. */
+static gboolean borrow_names(Skeleton *coarse, const Skeleton *full)
 {
-    const Params *p = s->leaf->params;
-    uint32_t wanted = (uint32_t)params_integer(p, PARAM_MESH_LEVELS) - 1;
-    s->level = g_new0(Level, MAX(wanted, 1));
-    for (uint32_t i = 1; i <= wanted; i++) {
-        SkeletonDef def = settings_skeleton(p, s->leaf->length, i);
-        MeshDef mesh_def = settings_mesh(p, s->leaf->length, i);
-        Skeleton *sk = skeleton_new(s->leaf->net, &def, error);
-        Mesh *coarse = sk ? mesh_skeleton(sk, &mesh_def, error) : NULL;
-        skeleton_free(sk);
-        if (!coarse)
-            return FALSE;
-        s->level[s->n_levels++] = level_of(s, coarse);
+    gboolean midrib = FALSE;
+    for (uint32_t q = 0; q < coarse->n_sequences; q++) {
+        Sequence *c = &coarse->sequence[q];
+        uint32_t k = 0;
+        while (k < full->n_sequences && (full->sequence[k].fictitious || full->sequence[k].vein != c->vein))
+            k++;
+        if (k < full->n_sequences)
+            g_strlcpy(c->name, full->sequence[k].name, sizeof c->name);
+        else
+            g_snprintf(c->name, sizeof c->name, "V%u", q); /* was no part of the full skeleton */
+        midrib |= k == 0;
     }
-    return TRUE;
+    return midrib;
+}
+
+/* A coarser leaf, NULL when that can't be. Short veins go, but the midrib stays. */
+static Mesh *coarse_mesh(const VenShape *s, double coarser, Skeleton **skeleton)
+{
+    const VenLeaf *leaf = s->leaf;
+    const Skeleton *full = s->skeleton;
+    SkeletonDef def = settings_skeleton(leaf->params, leaf->length, coarser);
+    MeshDef mesh_def = settings_mesh(leaf->params, leaf->length, coarser);
+    def.min_length = MIN(def.min_length, 0.7 * full->sequence[0].length);
+    Skeleton *sk = skeleton_new(leaf->net, &def, NULL);
+    Mesh *mesh = sk && borrow_names(sk, full) ? mesh_skeleton(sk, &mesh_def, NULL) : NULL;
+    *skeleton = mesh ? skeleton_refine(sk, mesh) : NULL;
+    skeleton_free(sk);
+    return mesh;
+}
+
+/* The coarse mesh that has nearest to `wanted` triangles, or, if none has few enough, the fewest. */
+static Mesh *find_level(const VenShape *s, double wanted, double *coarser, Skeleton **skeleton)
+{
+    Mesh *best = NULL;
+    double low = *coarser, at = 2.0 * low, high = 0.0;
+    *skeleton = NULL;
+    for (int i = 0; i < LEVEL_TRIES; i++) {
+        Skeleton *sk;
+        Mesh *mesh = coarse_mesh(s, at, &sk);
+        double n = mesh ? mesh->n_triangles : 0.0, before = best ? best->n_triangles : HUGE_VAL;
+        if (mesh && n >= LEAST_TRIANGLES && fabs(n - wanted) < fabs(before - wanted)) {
+            mesh_free(best);
+            skeleton_free(*skeleton);
+            best = mesh;
+            *skeleton = sk;
+            *coarser = at;
+        } else {
+            mesh_free(mesh);
+            skeleton_free(sk);
+        }
+        if (best && fabs(best->n_triangles - wanted) < 0.15 * wanted)
+            break;
+        if (n > wanted)
+            low = at;
+        else
+            high = at;
+        at = high > 0.0 ? sqrt(low * high) : 1.6 * at;
+    }
+    return best;
+}
+
+static void add_levels(VenShape *s)
+{
+    uint32_t wanted = (uint32_t)params_integer(s->leaf->params, PARAM_MESH_LEVELS) - 1;
+    double coarser = 1.0, triangles = s->mesh->n_triangles;
+    s->level = g_new0(Level, MAX(wanted, 1));
+    while (s->n_levels < wanted) {
+        Skeleton *skeleton;
+        uint32_t before = s->n_levels ? s->level[s->n_levels - 1].mesh->n_triangles : s->mesh->n_triangles;
+        triangles *= wanted_part;
+        Mesh *mesh = find_level(s, triangles, &coarser, &skeleton);
+        if (!mesh || mesh->n_triangles > most_part * before) { /* the leaf is as simple as it can be */
+            mesh_free(mesh);
+            skeleton_free(skeleton);
+            return;
+        }
+        s->level[s->n_levels++] = level_of(s, mesh, skeleton);
+    }
 }
 
 /* ---- the way there ---- */
 
 static Skeleton *make_skeleton(const VenLeaf *leaf, GError **error)
 {
-    SkeletonDef def = settings_skeleton(leaf->params, leaf->length, 0);
+    SkeletonDef def = settings_skeleton(leaf->params, leaf->length, 1.0);
     Vec2 *point = NULL;
     uint32_t *count = NULL, n;
     Skeleton *sk = skeleton_new(leaf->net, &def, error);
@@ -134,7 +282,9 @@ static Skeleton *make_skeleton(const VenLeaf *leaf, GError **error)
         sk = NULL;
     }
     if (sk && n) {
-        Skeleton *with = skeleton_add_fictitious(sk, point, count, n, error);
+        Skeleton *with = skeleton_add_fictitious(sk, point, count, n, leaf->length, error);
+        if (!with)
+            settings_prefix(leaf->params, PARAM_MESH_FICTITIOUS, error);
         skeleton_free(sk);
         sk = with;
     }
@@ -166,7 +316,7 @@ static gboolean build(VenShape *s, GError **error)
     Skeleton *coarse = make_skeleton(leaf, error);
     if (!coarse)
         return FALSE;
-    MeshDef def = settings_mesh(leaf->params, leaf->length, 0);
+    MeshDef def = settings_mesh(leaf->params, leaf->length, 1.0);
     s->mesh = mesh_skeleton(coarse, &def, error);
     if (s->mesh)
         s->skeleton = skeleton_refine(coarse, s->mesh);
@@ -176,7 +326,31 @@ static gboolean build(VenShape *s, GError **error)
     find_fixed(s);
     int choice = params_choice(leaf->params, PARAM_MESH_MEMBRANE);
     s->membrane = membrane_new(s->mesh, s->fixed, s->n_fixed, choice == MEMBRANE_CHOICE_BILAPLACE ? MEMBRANE_BILAPLACE : MEMBRANE_LAPLACE, error);
-    return s->membrane && add_levels(s, error);
+    if (!s->membrane)
+        return FALSE;
+    add_levels(s);
+    return TRUE;
+}
+
+/* A rig of the pose, so that it opens as it looks. */
+static Rig *make_rig(const VenShape *s, const Bent *bent, GError **error)
+{
+    static const uint32_t per_vertex[] = {0, 4, 8};
+    const Params *p = s->leaf->params;
+    uint32_t n = bent->veins ? bent->veins->n_vertices : 0;
+    uint32_t *node = g_new(uint32_t, MAX(n, 1));
+    if (n)
+        solid_vertex_nodes(bent->tubes, bent->n_tubes, &s->solid, node);
+    Rig *rig = rig_new(s->skeleton, s->mesh, s->membrane, s->fixed_node, s->n_fixed, node, n,
+                       (uint32_t)params_integer(p, PARAM_EXPORT_RIG_JOINTS), per_vertex[params_choice(p, PARAM_EXPORT_RIG)], error);
+    g_free(node);
+    return rig;
+}
+
+static void place_joints(Rig *rig, const Pose *pose)
+{
+    for (uint32_t j = 0; j < rig->n_joints; j++)
+        rig->joint[j].place = pose->place[rig->joint[j].node];
 }
 
 static gboolean bend_as_asked(VenShape *s, const Params *p, uint64_t seed, GError **error)
@@ -185,10 +359,18 @@ static gboolean bend_as_asked(VenShape *s, const Params *p, uint64_t seed, GErro
     Pose *pose = pose_new(s->skeleton);
     if (!pose_apply(pose, &def, error)) {
         pose_free(pose);
-        return FALSE;
+        return settings_prefix(p, PARAM_POSE_RULES, error);
     }
+    char *rules = g_strdup(def.rules);
+    g_free(s->rules);
+    s->bent_as = def;
+    s->bent_as.rules = s->rules = rules;
     bent_clear(&s->bent);
     s->bent = shape_bend(s, pose);
+    if (params_choice(s->leaf->params, PARAM_EXPORT_RIG) != 0 && !s->rig && !(s->rig = make_rig(s, &s->bent, error)))
+        return FALSE; /* for the first pose alone: weights go by the flat leaf */
+    if (s->rig)
+        place_joints(s->rig, pose);
     return TRUE;
 }
 
@@ -202,7 +384,7 @@ VenShape *ven_shape(const VenLeaf *leaf, GError **error)
     const Params *p = leaf->params;
     VenShape *s = g_new0(VenShape, 1);
     s->leaf = leaf;
-    s->solid = settings_solids(p, leaf->length);
+    s->solid = settings_solids(p, leaf->length, 1.0);
     s->unit = params_number(p, PARAM_EXPORT_LEAF_LENGTH) / leaf->length;
     s->frame = leaf_frame(leaf, leaf->net->margin->box);
     if (build(s, error) && bend_as_asked(s, p, leaf->seed, error))
@@ -216,12 +398,11 @@ void ven_shape_free(VenShape *s)
     if (!s)
         return;
     bent_clear(&s->bent);
-    for (uint32_t i = 0; i < s->n_levels; i++) {
-        mesh_free(s->level[i].mesh);
-        g_free(s->level[i].triangle);
-        g_free(s->level[i].weight);
-    }
+    for (uint32_t i = 0; i < s->n_levels; i++)
+        level_clear(&s->level[i]);
     g_free(s->level);
+    rig_free(s->rig);
+    g_free(s->rules);
     membrane_free(s->membrane);
     g_free(s->fixed);
     g_free(s->fixed_node);
@@ -250,4 +431,16 @@ void ven_shape_triangle(const VenShape *s, uint32_t triangle, uint32_t vertex[3]
     g_return_if_fail(triangle < s->mesh->n_triangles);
     for (int k = 0; k < 3; k++)
         vertex[k] = s->mesh->triangle[triangle][k];
+}
+
+uint32_t ven_shape_levels(const VenShape *s) { return 1 + s->n_levels; }
+
+gboolean ven_shape_rig(const VenShape *s, uint32_t *joints, double *worst_loss, double *mean_loss)
+{
+    if (!s->rig)
+        return FALSE;
+    *joints = s->rig->n_joints;
+    *worst_loss = s->rig->worst_loss;
+    *mean_loss = s->rig->mean_loss;
+    return TRUE;
 }

@@ -6,6 +6,7 @@
 #include "lib/leaf.h"
 #include "shape/membrane.h"
 #include "shape/pose.h"
+#include "shape/rig.h"
 #include "shape/solid.h"
 
 /* A pose of the whole leaf: veins, blade, vein solids. Vertex i of a surface is the same material point in every pose. */
@@ -20,6 +21,7 @@ typedef struct {
 /* A coarser mesh of the same leaf: its vertices lie in triangles of the full one. */
 typedef struct {
     Mesh *mesh;
+    Skeleton *skeleton;    /* what is left of the veins, refined; names as in the full leaf */
     uint32_t *triangle;    /* [mesh->n_vertices] of the full mesh */
     double (*weight)[3];   /* [mesh->n_vertices] barycentric */
 } Level;
@@ -33,26 +35,40 @@ struct VenShape {
     SolidDef solid;
     Frame frame;         /* of the maps: uv */
     double unit;         /* metres a segment */
-    Bent bent;           /* as [pose] asks */
-    uint32_t n_levels;   /* coarser ones */
+    PoseDef bent_as;     /* what [pose] asks; its rules are `rules` */
+    char *rules;
+    Bent bent;           /* so */
+    uint32_t n_levels;   /* coarser ones; fewer than were asked for when the leaf can't be made coarser */
     Level *level;
+    Rig *rig;            /* joints where the pose has them; NULL: none is asked for */
 };
 
 /* Poses the leaf; `pose` is taken over. */
 Bent shape_bend(const VenShape *s, Pose *pose);
 void bent_clear(Bent *b);
 
-/* The blade of a coarser level in that pose. */
-Surface *shape_level_blade(const VenShape *s, const Level *level, const Bent *bent);
+/* A coarser level (1, 2, …) in that pose. Veins that would take the whole above a quarter of the triangles of the level before are left out,
+ * the thinnest first. Its `pose` knows places alone. */
+Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent);
+
+/* Levels of detail there are, the full leaf included: at most mesh.levels. */
+uint32_t ven_shape_levels(const VenShape *s);
+
+/* Part of the blade's harmonic weights that did not fit into the joints a vertex may have, at worst and in the mean, and the number of joints;
+ * FALSE: the leaf has no rig. */
+gboolean ven_shape_rig(const VenShape *s, uint32_t *joints, double *worst_loss, double *mean_loss);
 
 /* uv of a point of the flat blade, v up. */
 Vec2 shape_uv(const VenShape *s, Vec2 rest);
 
-/* From the parameter table. `length` is the leaf's, segments; `level` 0 is the finest. */
-SkeletonDef settings_skeleton(const Params *p, double length, uint32_t level);
-MeshDef settings_mesh(const Params *p, double length, uint32_t level);
+/* From the parameter table. `length` is the leaf's, segments; `coarser` 1 is the finest, 2 has edges twice as long. */
+SkeletonDef settings_skeleton(const Params *p, double length, double coarser);
+MeshDef settings_mesh(const Params *p, double length, double coarser);
 PoseDef settings_pose(const Params *p, uint64_t seed);
-SolidDef settings_solids(const Params *p, double length);
+SolidDef settings_solids(const Params *p, double length, double coarser);
+
+/* Puts the place where the parameter was given before the error's message; always FALSE. */
+gboolean settings_prefix(const Params *p, ParamId id, GError **error);
 
 /* Which models are wanted, from export.models; an unknown name is an error. */
 typedef enum { MODEL_GLB, MODEL_OBJ, MODEL_PLY, MODEL_POV, MODEL_COUNT } ModelFormat;

@@ -1,28 +1,49 @@
 /* From [mesh], [pose] and [export] to the definitions that src/shape works from. */
+#include <math.h>
 #include <string.h>
 
 #include "lib/settings.h"
 #include "lib/shape.h"
 #include "param/suggest.h"
 
-SkeletonDef settings_skeleton(const Params *p, double length, uint32_t level)
+gboolean settings_prefix(const Params *p, ParamId id, GError **error)
 {
-    /* Veins and margin keep their points for longest: the first coarser level thins the inside alone. */
-    double coarser = level < 2 ? 1.0 : (double)(1u << (level - 1));
+    char *place = params_place(p, id);
+    g_prefix_error(error, "%s: ", place);
+    g_free(place);
+    return FALSE;
+}
+
+/* Sets an error that begins with the place where a parameter was given; always FALSE. */
+static G_GNUC_PRINTF(4, 5) gboolean conflict(const Params *p, ParamId id, GError **error, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *what = g_strdup_vprintf(format, args);
+    va_end(args);
+    g_set_error_literal(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, what);
+    g_free(what);
+    return settings_prefix(p, id, error);
+}
+
+/* What a coarse leaf must not lose: its outline by and large, and room for veins. */
+static const double most_tolerance = 0.03, most_clearance = 0.05;
+
+SkeletonDef settings_skeleton(const Params *p, double length, double coarser)
+{
+    double tolerance = params_number(p, PARAM_MESH_TOLERANCE), clearance = params_number(p, PARAM_MESH_CLEARANCE);
     SkeletonDef d = skeleton_def_default(length);
     d.max_order = (uint32_t)params_integer(p, PARAM_MESH_MAX_ORDER);
-    d.tolerance = params_number(p, PARAM_MESH_TOLERANCE) * length * coarser;
-    d.spacing = level ? 0.0 : params_number(p, PARAM_MESH_SPACING) * length;
-    d.clearance = params_number(p, PARAM_MESH_CLEARANCE) * length * coarser;
+    d.tolerance = MAX(tolerance, MIN(tolerance * coarser, most_tolerance)) * length;
+    d.spacing = coarser > 1.0 ? 0.0 : params_number(p, PARAM_MESH_SPACING) * length;
+    d.clearance = MAX(clearance, MIN(clearance * coarser, most_clearance)) * length;
     d.min_length = params_number(p, PARAM_MESH_MIN_LENGTH) * length * coarser;
     return d;
 }
 
-MeshDef settings_mesh(const Params *p, double length, uint32_t level)
+MeshDef settings_mesh(const Params *p, double length, double coarser)
 {
-    double area = params_number(p, PARAM_MESH_MAX_AREA) * length * length;
-    for (uint32_t i = 0; i < level; i++)
-        area *= 4.0;
+    double area = params_number(p, PARAM_MESH_MAX_AREA) * length * length * coarser * coarser;
     return (MeshDef){.min_angle = params_number(p, PARAM_MESH_MIN_ANGLE), .max_area = area, .max_triangles = 20000000};
 }
 
@@ -40,14 +61,15 @@ PoseDef settings_pose(const Params *p, uint64_t seed)
     return d;
 }
 
-SolidDef settings_solids(const Params *p, double length)
+SolidDef settings_solids(const Params *p, double length, double coarser)
 {
     SolidDef d = solid_def_default(length);
     d.scale = params_number(p, PARAM_MESH_VEIN_SCALE);
     d.offset = params_number(p, PARAM_MESH_VEIN_OFFSET);
     d.petiole_length = params_number(p, PARAM_MESH_PETIOLE_LENGTH) * length;
     d.petiole_bend = params_number(p, PARAM_MESH_PETIOLE_BEND);
-    d.sides = (uint32_t)params_integer(p, PARAM_MESH_VEIN_SIDES);
+    d.sides = MAX(3, (uint32_t)((double)params_integer(p, PARAM_MESH_VEIN_SIDES) / sqrt(coarser)));
+    d.spacing = 1.2 * params_number(p, PARAM_MESH_SPACING) * length * coarser; /* nodes a little nearer than a full edge may go */
     return d;
 }
 
@@ -66,9 +88,8 @@ gboolean settings_models(const Params *p, gboolean wanted[MODEL_COUNT], GError *
         ok = !**w || i < G_N_ELEMENTS(name);
         if (!ok) {
             const char *near = suggest_nearest(*w, name, G_N_ELEMENTS(name));
-            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
-                        "%s: [export] models: no format is called '%s'%s%s%s; there are all, none, glb, obj, ply, pov",
-                        params_origin(p, PARAM_EXPORT_MODELS), *w, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+            conflict(p, PARAM_EXPORT_MODELS, error, "no format is called '%s'%s%s%s; there are all, none, glb, obj, ply, pov", *w,
+                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         }
     }
     g_strfreev(word);
@@ -91,17 +112,14 @@ static gboolean one_keyframe(const Params *p, char *text, GArray *frames, GError
     double last = frames->len ? g_array_index(frames, Keyframe, frames->len - 1).time : -1.0;
     gboolean ok = number(word[0] ? word[0] : "", &k.time) && k.time > last;
     if (!ok)
-        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
-                    "%s: [pose] keyframes: '%s' must begin with seconds, 0 or more, later than the keyframe before it",
-                    params_origin(p, PARAM_POSE_KEYFRAMES), text);
+        conflict(p, PARAM_POSE_KEYFRAMES, error, "'%s' must begin with seconds, 0 or more, later than the keyframe before it", text);
     for (char **w = word[0] ? word + 1 : word; ok && *w; w++) {
         if (!**w)
             continue;
         char *setting = g_strdup_printf("pose.%s", *w);
         ok = strchr(*w, '=') != NULL && !g_str_has_prefix(*w, "keyframes");
         if (!ok)
-            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [pose] keyframes: '%s' must be key=value, with a key of [pose]",
-                        params_origin(p, PARAM_POSE_KEYFRAMES), *w);
+            conflict(p, PARAM_POSE_KEYFRAMES, error, "'%s' must be key=value, with a key of [pose]", *w);
         else
             ok = params_override(k.params, setting, error);
         g_free(setting);
@@ -159,16 +177,13 @@ gboolean settings_fictitious(const Params *p, double length, Vec2 **points, uint
                 continue;
             ok = point(*w, &q);
             if (!ok)
-                g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [mesh] fictitious_veins: '%s' must be x,y in leaf lengths",
-                            params_origin(p, PARAM_MESH_FICTITIOUS), *w);
+                conflict(p, PARAM_MESH_FICTITIOUS, error, "'%s' must be x,y in leaf lengths", *w);
             q = vec_scale(q, length);
             g_array_append_val(at, q);
             found++;
         }
         if (ok && found == 1) {
-            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: [mesh] fictitious_veins: '%s' needs two points at least",
-                        params_origin(p, PARAM_MESH_FICTITIOUS), *l);
-            ok = FALSE;
+            ok = conflict(p, PARAM_MESH_FICTITIOUS, error, "'%s' needs two points at least", *l);
         }
         if (found)
             g_array_append_val(counts, found);

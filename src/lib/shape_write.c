@@ -1,8 +1,10 @@
 /* Writing a shaped leaf: models for other programs and the maps they refer to. */
+#include <math.h>
 #include <string.h>
 
 #include "export/export.h"
 #include "export/model.h"
+#include "geom/dtrig.h"
 #include "lib/settings.h"
 #include "lib/shape.h"
 #include "lib/writer.h"
@@ -161,102 +163,153 @@ static gboolean write_formats(const ModelWriter *m, const Model *model, const ch
 
 /* ---- coarser levels ---- */
 
-static gboolean write_level(const ModelWriter *m, uint32_t i, GError **error)
+static gboolean write_level(const ModelWriter *m, uint32_t level, GError **error)
 {
     const VenShape *s = m->shape;
     Model model = m->model;
-    Surface *blade = shape_level_blade(s, &s->level[i], &s->bent);
-    SolidDef solid = s->solid;
-    solid.sides = MAX(3, solid.sides >> (i + 1));
-    Surface *veins = s->bent.veins ? solid_surface(s->bent.tubes, s->bent.n_tubes, &solid) : NULL;
-    for (uint32_t k = 0; veins && k < veins->n_vertices; k++)
-        veins->uv[k] = shape_uv(s, veins->uv[k]);
-    model.blade = blade;
-    model.veins = veins;
+    Bent bent = shape_level_bend(s, level, &s->bent);
+    model.blade = bent.blade;
+    model.veins = bent.veins;
+    model.tubes = bent.tubes;
+    model.n_tubes = bent.n_tubes;
+    model.skeleton = s->level[level - 1].skeleton;
     model.vein_order = model.on_margin = NULL;
     model.vein_radius = NULL;
     model.vein_id = NULL;
     model.morph = NULL;
     model.n_morphs = 0;
-    char *suffix = g_strdup_printf("_lod%u", i + 1);
+    char *suffix = g_strdup_printf("_lod%u", level);
     gboolean ok = write_formats(m, &model, suffix, error);
     g_free(suffix);
-    surface_free(blade);
-    surface_free(veins);
+    bent_clear(&bent);
     return ok;
 }
 
 /* ---- rig ---- */
 
-/* The rig at the pose that is written, so that it opens as it looks. */
-static Rig *make_rig(const VenShape *s, GError **error)
-{
-    static const uint32_t per_vertex[] = {0, 4, 8};
-    const Params *p = s->leaf->params;
-    uint32_t n = s->bent.veins ? s->bent.veins->n_vertices : 0;
-    uint32_t *node = g_new(uint32_t, MAX(n, 1));
-    if (n)
-        solid_vertex_nodes(s->bent.tubes, s->bent.n_tubes, &s->solid, node);
-    Rig *rig = rig_new(s->skeleton, s->mesh, s->membrane, s->fixed_node, s->n_fixed, node, n,
-                       (uint32_t)params_integer(p, PARAM_EXPORT_RIG_JOINTS), per_vertex[params_choice(p, PARAM_EXPORT_RIG)], error);
-    for (uint32_t j = 0; rig && j < rig->n_joints; j++)
-        rig->joint[j].place = s->bent.pose->place[rig->joint[j].node];
-    g_free(node);
-    return rig;
-}
-
 static gboolean write_rigged(const ModelWriter *m, GError **error)
 {
     Model model = m->model;
-    Rig *rig = make_rig(m->shape, error);
-    if (!rig)
-        return FALSE;
-    model.rig = rig;
+    model.rig = m->shape->rig;
     model.morph = NULL;
     model.n_morphs = 0;
     char *path = writer_path(&m->writer, "_rigged.glb");
     gboolean ok = export_glb(&model, path, error);
     g_free(path);
-    rig_free(rig);
     return ok;
 }
 
 /* ---- keyframes ---- */
 
-static gboolean write_animated(const ModelWriter *m, GError **error)
+/* Morph targets move vertices along straight lines, so between far poses the blade would shrink: poses are put between, STEP degrees of the
+ * largest turn apart, at most MOST_BETWEEN in a row. */
+enum { STEP_DEGREES = 15, MOST_BETWEEN = 23 };
+
+typedef struct {
+    PoseDef def;
+    Pose *pose; /* owned */
+    double time;
+} Moment;
+
+static void moment_clear(gpointer data) { pose_free(((Moment *)data)->pose); }
+
+static gboolean pose_moment(const VenShape *s, const PoseDef *def, Moment *m, GError **error)
 {
-    const VenShape *s = m->shape;
-    Keyframe *frame;
-    uint32_t n;
-    if (!settings_keyframes(s->leaf->params, &frame, &n, error))
-        return FALSE;
-    Bent *bent = g_new0(Bent, MAX(n, 1));
-    ModelMorph *morph = g_new0(ModelMorph, MAX(n, 1));
-    gboolean ok = TRUE;
-    for (uint32_t i = 0; ok && i < n; i++) {
+    m->def = *def;
+    m->pose = pose_new(s->skeleton);
+    return pose_apply(m->pose, def, error);
+}
+
+/* Poses between the last moment and the next one. */
+static gboolean add_between(const VenShape *s, GArray *moments, const Moment *last, const Moment *next, GError **error)
+{
+    double apart = pose_apart(last->pose, next->pose) / DTRIG_DEGREE;
+    uint32_t n = (uint32_t)CLAMP(ceil(apart / STEP_DEGREES - 1e-6) - 1.0, 0.0, MOST_BETWEEN);
+    for (uint32_t i = 1; i <= n; i++) {
+        double part = (double)i / (n + 1);
+        Moment m = {.time = last->time + part * (next->time - last->time)};
+        PoseDef def;
+        gboolean ok = TRUE;
+        if (pose_def_between(&last->def, &next->def, part, &def))
+            ok = pose_moment(s, &def, &m, error);
+        else
+            m.pose = pose_between(last->pose, next->pose, part);
+        g_array_append_val(moments, m);
+        if (!ok)
+            return FALSE;
+    }
+    return TRUE;
+}
+
+/* From the pose that is written, at 0 s, through the keyframes. */
+static GArray *make_moments(const VenShape *s, const Keyframe *frame, uint32_t n, GError **error)
+{
+    GArray *moments = g_array_new(FALSE, TRUE, sizeof(Moment));
+    g_array_set_clear_func(moments, moment_clear);
+    Moment last = {.def = s->bent_as, .pose = s->bent.pose};
+    for (uint32_t i = 0; i < n; i++) {
+        Moment next = {.time = frame[i].time};
         PoseDef def = settings_pose(frame[i].params, s->leaf->seed);
-        Pose *pose = pose_new(s->skeleton);
-        ok = pose_apply(pose, &def, error);
-        if (!ok) {
-            pose_free(pose);
-            break;
+        gboolean ok = pose_moment(s, &def, &next, error);
+        if (!ok)
+            settings_prefix(s->leaf->params, PARAM_POSE_KEYFRAMES, error);
+        if (!ok || (next.time > last.time && !add_between(s, moments, &last, &next, error))) {
+            pose_free(next.pose);
+            g_array_unref(moments);
+            return NULL;
         }
-        bent[i] = shape_bend(s, pose);
-        morph[i] = (ModelMorph){"keyframe", bent[i].blade->place, bent[i].blade->normal, bent[i].veins ? bent[i].veins->place : NULL,
-                                bent[i].veins ? bent[i].veins->normal : NULL, frame[i].time};
+        g_array_append_val(moments, next);
+        last = next;
     }
-    if (ok && n) {
-        Model model = m->model;
-        char *path = writer_path(&m->writer, "_animated.glb");
-        model.morph = morph;
-        model.n_morphs = n;
-        ok = export_glb(&model, path, error);
-        g_free(path);
+    return moments;
+}
+
+/* "1.25 s" */
+static char *name_of_time(double seconds)
+{
+    GString *s = g_string_new(NULL);
+    export_number(s, floor(seconds * 1e4 + 0.5) / 1e4);
+    g_string_append(s, " s");
+    return g_string_free(s, FALSE);
+}
+
+static gboolean write_moments(const ModelWriter *m, GArray *moments, GError **error)
+{
+    Bent *bent = g_new0(Bent, moments->len);
+    ModelMorph *morph = g_new0(ModelMorph, moments->len);
+    char **name = g_new0(char *, (gsize)moments->len + 1);
+    for (uint32_t i = 0; i < moments->len; i++) {
+        Moment *at = &g_array_index(moments, Moment, i);
+        bent[i] = shape_bend(m->shape, at->pose);
+        at->pose = NULL; /* taken over */
+        name[i] = name_of_time(at->time);
+        morph[i] = (ModelMorph){name[i], bent[i].blade->place, bent[i].blade->normal, bent[i].veins ? bent[i].veins->place : NULL,
+                                bent[i].veins ? bent[i].veins->normal : NULL, at->time};
     }
-    for (uint32_t i = 0; i < n; i++)
+    Model model = m->model;
+    char *path = writer_path(&m->writer, "_animated.glb");
+    model.morph = morph;
+    model.n_morphs = moments->len;
+    gboolean ok = export_glb(&model, path, error);
+    g_free(path);
+    for (uint32_t i = 0; i < moments->len; i++)
         bent_clear(&bent[i]);
+    g_strfreev(name);
     g_free(bent);
     g_free(morph);
+    return ok;
+}
+
+static gboolean write_animated(const ModelWriter *m, GError **error)
+{
+    Keyframe *frame;
+    uint32_t n;
+    if (!settings_keyframes(m->shape->leaf->params, &frame, &n, error))
+        return FALSE;
+    GArray *moments = make_moments(m->shape, frame, n, error);
+    gboolean ok = moments != NULL && (moments->len == 0 || write_moments(m, moments, error));
+    if (moments)
+        g_array_unref(moments);
     keyframes_free(frame, n);
     return ok;
 }
@@ -280,10 +333,10 @@ static gboolean write_all(ModelWriter *m, GError **error)
         embed(m);
     fill_model(m);
     gboolean ok = write_formats(m, &m->model, "", error);
-    for (uint32_t i = 0; ok && i < s->n_levels; i++)
+    for (uint32_t i = 1; ok && i <= s->n_levels; i++)
         ok = write_level(m, i, error);
     if (ok && m->wanted[MODEL_GLB])
-        ok = write_animated(m, error) && (params_choice(s->leaf->params, PARAM_EXPORT_RIG) == 0 || write_rigged(m, error));
+        ok = write_animated(m, error) && (!s->rig || write_rigged(m, error));
     return ok && write_record(m, error);
 }
 

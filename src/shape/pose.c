@@ -110,6 +110,84 @@ void pose_rotate(Pose *p, uint32_t node, Vec3 axis, double angle)
     }
 }
 
+/* ---- between poses ---- */
+
+/* Rotation vector of the turn of an edge against the one before it in b, seen from that in a. */
+static Vec3 turn_between(const Pose *a, const Pose *b, uint32_t node)
+{
+    uint32_t hinge = a->skeleton->hinge[node];
+    Mat3 from = a->turn[node], to = b->turn[node];
+    if (hinge != NO_PARENT) {
+        from = mat3_mul(mat3_transpose(a->turn[hinge]), from);
+        to = mat3_mul(mat3_transpose(b->turn[hinge]), to);
+    }
+    Mat3 m = mat3_mul(mat3_transpose(from), to);
+    Vec3 axis = vec3(m.y.z - m.z.y, m.z.x - m.x.z, m.x.y - m.y.x); /* times 2 sin of the angle */
+    double sine = 0.5 * vec3_norm(axis), cosine = 0.5 * (m.x.x + m.y.y + m.z.z - 1.0);
+    if (sine < 1e-12 && cosine < 0.0) { /* half a turn: the axis is the longest column of m + 1 */
+        Vec3 c[3] = {m.x, m.y, m.z};
+        c[0].x += 1.0, c[1].y += 1.0, c[2].z += 1.0;
+        axis = c[0];
+        for (int k = 1; k < 3; k++)
+            if (vec3_dot(c[k], c[k]) > vec3_dot(axis, axis))
+                axis = c[k];
+    }
+    return vec3_scale(vec3_unit(axis, vec3(0.0, 0.0, 0.0)), dtrig_atan2(sine, cosine));
+}
+
+Pose *pose_between(const Pose *a, const Pose *b, double part)
+{
+    const Skeleton *s = a->skeleton;
+    Pose *p = pose_copy(a);
+    for (uint32_t i = 0; i < s->n_nodes; i++) { /* hinges come first */
+        uint32_t hinge = s->hinge[i];
+        Mat3 local = hinge == NO_PARENT ? a->turn[i] : mat3_mul(mat3_transpose(a->turn[hinge]), a->turn[i]);
+        local = rotation_compose(local, rotation_by(vec3_scale(turn_between(a, b, i), part)));
+        p->turn[i] = hinge == NO_PARENT ? local : rotation_compose(p->turn[hinge], local);
+        if (hinge == NO_PARENT)
+            p->place[i] = vec3_lerp(a->place[i], b->place[i], part);
+        else
+            pose_place(p, i);
+    }
+    return p;
+}
+
+double pose_apart(const Pose *a, const Pose *b)
+{
+    const Skeleton *s = a->skeleton;
+    double *sum = g_new(double, (gsize)s->n_nodes + 1), most = 0.0;
+    for (uint32_t i = 0; i < s->n_nodes; i++) {
+        sum[i] = vec3_norm(turn_between(a, b, i)) + (s->hinge[i] == NO_PARENT ? 0.0 : sum[s->hinge[i]]);
+        most = sum[i] > most ? sum[i] : most;
+    }
+    g_free(sum);
+    return most;
+}
+
+static bool is_flat(const PoseDef *d) { return d->blend == 0.0 || (d->kind == POSE_FLAT && !(d->rules && *d->rules)); }
+
+bool pose_def_between(const PoseDef *a, const PoseDef *b, double part, PoseDef *between)
+{
+    PoseDef from = *a, to = *b;
+    if (is_flat(a)) {
+        from = *b;
+        from.blend = 0.0;
+    } else if (is_flat(b)) {
+        to = *a;
+        to.blend = 0.0;
+    }
+    if (from.kind != to.kind || from.seed != to.seed || g_strcmp0(from.rules, to.rules) != 0)
+        return false;
+    *between = from;
+    between->strength += part * (to.strength - from.strength);
+    between->age += part * (to.age - from.age);
+    between->variation += part * (to.variation - from.variation);
+    between->blend += part * (to.blend - from.blend);
+    return true;
+}
+
+/* ---- splines ---- */
+
 /* A natural cubic spline through `point`, by chord length, and the arc length from its start to STEPS places in each piece. */
 typedef struct {
     uint32_t n;

@@ -35,6 +35,13 @@ Mat3 pose_rotation(Vec3 axis, double angle);
  * from `node` goes along, what else leaves the hinge stays. A root has no hinge: its whole tree turns about it. O(subtree). */
 void pose_rotate(Pose *p, uint32_t node, Vec3 axis, double angle);
 
+/* A pose on the way from a to b, part 0 … 1, of the same skeleton: every edge turns against the one before evenly about one axis, so veins keep
+ * their lengths on the way. O(n_nodes). */
+Pose *pose_between(const Pose *a, const Pose *b, double part);
+
+/* How far the farthest turning edge turns on that way, radians: the turns from the root to it in sum. O(n_nodes). */
+double pose_apart(const Pose *a, const Pose *b);
+
 /* Second method (§ 7.1.2): control[0 … n-1] are indices of nodes of sequence `q`, ascending, the first 0 and the last its tip, n >= 2;
  * target[n] where they are wanted, but that the first node stays where it is whatever target[0] says. A natural cubic spline by chord
  * length goes through the targets; between two controls the sequence's nodes are mapped onto it in proportion to arc length, and one hinge
@@ -59,6 +66,9 @@ typedef struct {
 } PoseDef;
 
 PoseDef pose_def_default(void);
+
+/* The definition on the way from a to b, if they differ in strength, age, variation and blend alone, or if one of them is flat; else false. */
+bool pose_def_between(const PoseDef *a, const PoseDef *b, double part, PoseDef *between);
 
 /* Poses the skeleton from flat. Ready-made poses are bends per unit length, so they don't depend on how finely veins are cut.
  * Rules are parted by ';', each "VEINS ACTION"; lift, turn and fold are added to the bends of the ready-made pose, then rotate and spline follow

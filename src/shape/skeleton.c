@@ -103,14 +103,14 @@ static void copy_nodes(Copy *x, const Cleared *from, Sequence *q)
     for (uint32_t k = 0; k < from->knot->len; k++) {
         Knot knot = g_array_index(from->knot, Knot, k);
         uint32_t *node = &x->node_of[knot.node];
-        if (*node == NONE) {
+        if (*node == NONE) { /* parents come first: a node where a branch leaves is as wide as they are */
             *node = x->n_nodes++;
             s->rest[*node] = ground_at(&x->c->ground, knot.node);
+            s->radius[*node] = 0.5 * knot.width;
             s->hinge[*node] = k > 0 ? s->at[x->n_at - 1] : NO_PARENT;
         }
         if (k > 0)
             q->length += vec_dist(s->rest[s->at[x->n_at - 1]], s->rest[*node]);
-        s->radius[*node] = MAX(s->radius[*node], 0.5 * knot.width);
         s->at[x->n_at++] = *node;
     }
 }

@@ -26,7 +26,7 @@ typedef struct {
     uint8_t order;         /* 1 primary, 2 secondary, … */
     bool fictitious;       /* shapes the blade, is not drawn (Hong 2005, § 7.2) */
     uint32_t vein;         /* of the network, NO_PARENT for a fictitious one */
-    double base_radius, tip_radius; /* segments */
+    double base_radius, tip_radius; /* its own at its first node and its tip, segments */
     double length;         /* at rest, segments */
     char name[24];         /* midrib (sequence 0); P2 … other primaries; F1 … fictitious; else side and number from the base: L1, R2 …, with its
                               parent's before it when that is not the midrib: R2.L1, P2.R3 */
@@ -38,7 +38,7 @@ typedef struct {
     uint32_t n_nodes, n_sequences, n_at;
     Vec2 *rest;       /* [n_nodes] position in the flat blade, segments */
     uint32_t *hinge;  /* [n_nodes] */
-    double *radius;   /* [n_nodes] of the widest vein at the node, segments */
+    double *radius;   /* [n_nodes] of the first sequence that has the node, segments: at a branch's first node of its parent */
     uint32_t *vertex; /* [n_nodes] the mesh's vertex at the node; set by skeleton_refine, else NO_PARENT */
     uint32_t *at;     /* [n_at] nodes of the sequences, one sequence after the other */
     Sequence *sequence; /* [n_sequences] parents before children */
@@ -68,8 +68,9 @@ void skeleton_free(Skeleton *s);
 
 /* Adds fictitious veins as drawn by hand: vein k is a polyline of count[k] >= 2 of the points, from the first one (snapped to the nearest node) to
  * a tip inside the blade. Returns a new skeleton, whose other nodes and sequences keep their numbers; long edges are cut. The error names
- * the vein and where it comes nearer than `least` to what is there. */
-Skeleton *skeleton_add_fictitious(const Skeleton *s, const Vec2 *point, const uint32_t *count, uint32_t n_veins, GError **error);
+ * the vein (F1, F2 …) and where it comes nearer than `least` to what is there, in parts of `unit` segments: the leaf's length if the points
+ * were given so, or 1. */
+Skeleton *skeleton_add_fictitious(const Skeleton *s, const Vec2 *point, const uint32_t *count, uint32_t n_veins, double unit, GError **error);
 
 /* Outline and veins as a planar straight-line graph. node_point[n_nodes] receives each node's point. */
 Pslg *skeleton_pslg(const Skeleton *s, uint32_t *node_point);

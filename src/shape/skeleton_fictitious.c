@@ -8,6 +8,8 @@ typedef struct {
     GArray *rest, *hinge, *at, *sequence; /* of the skeleton that is made: Vec2, uint32_t, uint32_t, Sequence */
     GArray *spot;                         /* uint32_t: of each node, the ground's node */
     double spacing;                       /* longest edge, segments */
+    double unit;                          /* of messages, segments */
+    uint32_t number;                      /* 1, 2, … of the vein that is laid */
 } Adding;
 
 static void adding_init(Adding *a, const Skeleton *s)
@@ -74,7 +76,7 @@ static uint32_t sequence_of(const Adding *a, uint32_t node, uint32_t *place)
 }
 
 /* Lays an edge in parts no longer than the spacing. */
-static bool lay_to(Adding *a, uint32_t vein, Vec2 to, GError **error)
+static bool lay_to(Adding *a, Vec2 to, GError **error)
 {
     Ground *g = &a->ground;
     Vec2 from = ground_end(g);
@@ -84,8 +86,9 @@ static bool lay_to(Adding *a, uint32_t vein, Vec2 to, GError **error)
         Hit hit = ground_clash(g, v, NULL);
         if (hit != HIT_NOTHING) {
             const char *fault = hit == HIT_MARGIN ? "comes too near to the margin, or leaves the blade," : "comes too near to another vein or to itself";
-            g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "fictitious vein %u %s between (%g, %g) and (%g, %g); it must keep %g away",
-                        vein, fault, from.x, from.y, to.x, to.y, g->limits.least);
+            double u = a->unit;
+            g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "fictitious vein F%u %s between %.4g,%.4g and %.4g,%.4g; it must keep %.2g away",
+                        a->number, fault, from.x / u, from.y / u, to.x / u, to.y / u, g->limits.least / u);
             return false;
         }
         ground_lay(g, v, NULL);
@@ -114,22 +117,22 @@ static void add_sequence(Adding *a, uint32_t start)
     g_array_append_val(a->sequence, q);
 }
 
-static bool add_vein(Adding *a, uint32_t vein, const Vec2 *p, uint32_t n, GError **error)
+static bool add_vein(Adding *a, const Vec2 *p, uint32_t n, GError **error)
 {
     if (n < 2) {
-        g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "fictitious vein %u has %u points; at least 2 are needed", vein, n);
+        g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "fictitious vein F%u has %u points; at least 2 are needed", a->number, n);
         return false;
     }
     for (uint32_t i = 0; i < n; i++)
         if (!isfinite(p[i].x) || !isfinite(p[i].y)) {
-            g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "point %u of fictitious vein %u is (%g, %g); positions must be finite", i, vein,
+            g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_GRAPH, "point %u of fictitious vein F%u is %g,%g; positions must be finite", i + 1, a->number,
                         p[i].x, p[i].y);
             return false;
         }
     uint32_t start = nearest_node(a, p[0]), spot = g_array_index(a->spot, uint32_t, start);
     ground_begin(&a->ground, a->sequence->len, (Anchor){ground_at(&a->ground, spot), spot, NONE});
     for (uint32_t i = 1; i < n; i++)
-        if (!lay_to(a, vein, p[i], error))
+        if (!lay_to(a, p[i], error))
             return false;
     add_sequence(a, start);
     ground_commit(&a->ground, NULL);
@@ -150,14 +153,19 @@ static Skeleton *finish(const Adding *a, const Skeleton *from)
     return s;
 }
 
-Skeleton *skeleton_add_fictitious(const Skeleton *s, const Vec2 *point, const uint32_t *count, uint32_t n_veins, GError **error)
+Skeleton *skeleton_add_fictitious(const Skeleton *s, const Vec2 *point, const uint32_t *count, uint32_t n_veins, double unit, GError **error)
 {
     Adding a;
     Skeleton *out = NULL;
     bool ok = true;
     adding_init(&a, s);
-    for (uint32_t k = 0, first = 0; k < n_veins && ok; first += count[k++])
-        ok = add_vein(&a, k, point + first, count[k], error);
+    a.unit = unit;
+    for (uint32_t i = 0; i < s->n_sequences; i++)
+        a.number += s->sequence[i].fictitious;
+    for (uint32_t k = 0, first = 0; k < n_veins && ok; first += count[k++]) {
+        a.number++;
+        ok = add_vein(&a, point + first, count[k], error);
+    }
     if (ok)
         out = finish(&a, s);
     adding_clear(&a);

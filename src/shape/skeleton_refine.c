@@ -18,6 +18,7 @@ typedef struct {
     Skeleton *to;
     uint32_t *point;   /* [nodes] each node's point in the graph, which is the mesh's vertex */
     uint32_t *segment; /* [nodes] the segment that leads to it */
+    double *from;      /* [nodes] radius with which that segment begins: of its own sequence, not of the parent that it may leave */
     uint32_t *start;   /* [segments + 1] */
     uint32_t *first;   /* [nodes] in the new skeleton: the first node of the segment that leads to it, its hinge excepted */
     uint32_t *node_of; /* [nodes] in the new skeleton */
@@ -41,12 +42,23 @@ static uint32_t add_segment(Refining *r, uint32_t i, uint32_t n)
     for (uint32_t e = r->start[k]; e + 1 < r->start[k + 1]; e++) {
         uint32_t vertex = r->mesh->vein[e][1];
         double t = vec_dist(s->rest[hinge], r->mesh->vertex[vertex]) / length;
-        add_node(r, n, last, vertex, s->radius[hinge] + (s->radius[i] - s->radius[hinge]) * t);
+        add_node(r, n, last, vertex, r->from[i] + (s->radius[i] - r->from[i]) * t);
         last = n++;
     }
     add_node(r, n, last, r->point[i], s->radius[i]);
     r->node_of[i] = n;
     return n + 1;
+}
+
+static double *radii_at_hinges(const Skeleton *s)
+{
+    double *from = g_new0(double, s->n_nodes);
+    for (uint32_t q = 0; q < s->n_sequences; q++)
+        for (uint32_t k = 1; k < s->sequence[q].n; k++) {
+            const uint32_t *at = s->at + s->sequence[q].first + k;
+            from[at[0]] = k == 1 ? s->sequence[q].base_radius : s->radius[at[-1]];
+        }
+    return from;
 }
 
 static void add_sequences(Refining *r)
@@ -83,7 +95,7 @@ static Polygon *boundary_polygon(const Mesh *mesh)
 Skeleton *skeleton_refine(const Skeleton *s, const Mesh *mesh)
 {
     Refining r = {.s = s, .mesh = mesh, .point = g_new(uint32_t, s->n_nodes), .segment = g_new(uint32_t, s->n_nodes),
-                  .first = g_new(uint32_t, s->n_nodes), .node_of = g_new(uint32_t, s->n_nodes)};
+                  .from = radii_at_hinges(s), .first = g_new(uint32_t, s->n_nodes), .node_of = g_new(uint32_t, s->n_nodes)};
     Pslg *g = skeleton_pslg(s, r.point);
     uint32_t n = 0, segments = 0, n_more = mesh->n_vein - g->n_segments;
     r.start = edges_of_segments(mesh, g->n_segments);
@@ -102,6 +114,7 @@ Skeleton *skeleton_refine(const Skeleton *s, const Mesh *mesh)
     pslg_free(g);
     g_free(r.point);
     g_free(r.segment);
+    g_free(r.from);
     g_free(r.start);
     g_free(r.first);
     g_free(r.node_of);

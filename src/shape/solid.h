@@ -21,13 +21,16 @@ void surface_normals(Surface *s);
 
 /* A vein as a chain of balls, smoothly joined: centre and radius. */
 typedef struct {
-    uint32_t sequence; /* of the skeleton, NO_PARENT: the petiole */
+    uint32_t sequence; /* of the skeleton, NO_PARENT: of none */
     uint32_t n;
     Vec3 *centre;      /* [n] */
     Vec2 *rest;        /* [n] where it lies in the flat blade, segments: there its colour is in the maps */
     double *radius;    /* [n] */
     uint32_t *node;    /* [n] nearest node of the skeleton on the sequence; of the petiole the midrib's first */
     Vec3 up;           /* the blade's normal at the first ball, where the rings' frames start */
+    uint32_t sides;    /* of its cross-section, 0: the definition's */
+    uint32_t petiole;  /* the first so many balls are the petiole's, far end first */
+    bool inside;       /* begins within its parent's tube */
 } Tube;
 
 typedef struct {
@@ -36,20 +39,26 @@ typedef struct {
     double least_radius;    /* thinner veins are drawn this thick, segments */
     double petiole_length;  /* segments; 0: none */
     double petiole_bend;    /* degrees over its length, away from the sunny side */
-    uint32_t sides;         /* of a cross-section, 3 … 64 */
+    uint32_t sides;         /* of the thickest cross-section, 3 … 64; thinner veins have fewer, down to 3 */
+    double spacing;         /* farthest that two balls stand apart, segments; 0: any */
 } SolidDef;
 
 SolidDef solid_def_default(double leaf_length);
 
-/* Tubes of all sequences that are drawn, and of the petiole first (if it has a length); `normal[n_nodes]` is the blade's unit normal at each
- * node. A branch begins inside its parent's tube, a little widened, so the two join without a gap; the petiole inside the midrib. How many
- * balls a tube has depends on the skeleton and `def` alone, so that poses of one leaf have the same tubes. *n_tubes receives their number. */
+/* Tubes of all sequences that are drawn, the midrib's first, which begins with the petiole (if that has a length); `normal[n_nodes]` is the
+ * blade's unit normal at each node. A branch begins inside its parent's tube, a little widened, so the two join without a gap. Balls stand
+ * where branches leave, and between as the lie of the flat vein and its thickness ask for. How many a tube has depends on the skeleton and
+ * `def` alone, so that poses of one leaf have the same tubes. *n_tubes receives their number. */
 Tube *solid_tubes(const Pose *p, const Vec3 *normal, const SolidDef *def, uint32_t *n_tubes);
 void solid_tubes_free(Tube *t, uint32_t n);
+void solid_tube_clear(Tube *t);
 
 /* Tubes as closed triangle surfaces with round ends, one after the other, with frames that don't twist. uv holds the rest place of the tube's
  * node in segments; whoever knows the maps' frame makes it a uv. */
 Surface *solid_surface(const Tube *t, uint32_t n_tubes, const SolidDef *def);
+
+/* How many triangles a tube has there. */
+uint32_t solid_tube_triangles(const Tube *t, const SolidDef *def);
 
 /* node[n_vertices] of solid_surface's result: the skeleton node that each vertex goes with. */
 void solid_vertex_nodes(const Tube *t, uint32_t n_tubes, const SolidDef *def, uint32_t *node);

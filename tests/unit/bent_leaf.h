@@ -14,7 +14,7 @@ static char *folder;
 
 static char *in_folder(const char *name) { return g_build_filename(folder, name, NULL); }
 
-static char *contents(const char *path, gsize *length)
+static G_GNUC_NO_INLINE char *contents(const char *path, gsize *length)
 {
     char *text;
     GError *error = NULL;

@@ -519,6 +519,102 @@ static void test_withered(void)
     }
 }
 
+/* Drying up lifts both sides of the blade at once where the side veins leave: V-shaped, towards the sunny side, more with age. */
+static void test_withered_fold(void)
+{
+    Skeleton *s = hand_pinnate(9, 3);
+    PoseDef def = pose_def_default();
+    def.kind = POSE_WITHERED;
+    def.variation = 0.0;
+    for (uint32_t k = 1; k <= 5; k++) {
+        def.age = k / 5.0;
+        Pose *p = posed(s, def);
+        uint32_t seen = 0;
+        for (uint32_t q = 1; q < s->n_sequences; q++) {
+            const uint32_t *at = s->at + s->sequence[q].first;
+            if (s->sequence[q].parent != 0)
+                continue;
+            Vec3 d = vec3_unit(vec3_sub(p->place[at[1]], p->place[at[0]]), vec3(0, 0, 0));
+            double rise = asin(vec3_dot(d, p->turn[at[0]].z)) / DTRIG_DEGREE;
+            g_assert_cmpfloat(rise, >, 8.0 * def.age); /* 18°, but the veins leave askew */
+            g_assert_cmpfloat(rise, <, 18.0 * def.age + 8.0);
+            seen++;
+        }
+        g_assert_cmpuint(seen, >, 5);
+        pose_free(p);
+    }
+    hand_free(s);
+}
+
+/* On the way between two poses veins keep their lengths, the ends are the poses, and the turns along it come to what pose_apart says. */
+static void test_between(void)
+{
+    for (int which = 0; which < 3; which++)
+        for (int k = 0; k < 4; k++) {
+            Skeleton *s = leaf(which, 3);
+            PoseDef from = pose_def_default(), to = pose_def_default();
+            from.kind = k == 0 ? POSE_FLAT : POSE_CUPPED;
+            to.kind = k == 3 ? POSE_CURLED_TIP : POSE_WITHERED;
+            to.age = 1.0;
+            if (k == 2)
+                to.rules = "midrib rotate x 180 at 0.5";
+            Pose *a = posed(s, from), *b = posed(s, to);
+            double apart = pose_apart(a, b), sum = 0.0;
+            g_assert_cmpfloat(pose_apart(a, a), <, 1e-6);
+            g_assert_cmpfloat(apart, >, 0.3);
+            g_assert_cmpfloat_with_epsilon(pose_apart(b, a), apart, 1e-6);
+            Pose *last = pose_copy(a);
+            for (int i = 0; i <= 10; i++) {
+                Pose *p = pose_between(a, b, i / 10.0);
+                for (uint32_t n = 0; n < s->n_nodes; n++) {
+                    uint32_t h = s->hinge[n];
+                    if (h != NO_PARENT)
+                        g_assert_cmpfloat_with_epsilon(vec3_dist(p->place[n], p->place[h]), vec_dist(s->rest[n], s->rest[h]), 1e-9);
+                    if (i == 0 || i == 10)
+                        g_assert_cmpfloat(vec3_dist(p->place[n], (i ? b : a)->place[n]), <, 1e-6);
+                }
+                double step = pose_apart(last, p);
+                sum += step;
+                if (i > 0)
+                    g_assert_cmpfloat_with_epsilon(step, apart / 10, 1e-6);
+                pose_free(last);
+                last = p;
+            }
+            g_assert_cmpfloat_with_epsilon(sum, apart, 1e-5);
+            pose_free(last);
+            pose_free(a);
+            pose_free(b);
+            hand_free(s);
+        }
+}
+
+static void test_def_between(void)
+{
+    PoseDef flat = pose_def_default(), old = pose_def_default(), rules = pose_def_default(), out;
+    old.kind = POSE_WITHERED;
+    old.age = 1.0;
+    old.strength = 2.0;
+    rules.kind = POSE_WITHERED;
+    rules.rules = "midrib lift 10";
+    g_assert_true(pose_def_between(&flat, &old, 0.25, &out)); /* flat is the other pose not yet begun */
+    g_assert_true(out.kind == POSE_WITHERED && out.blend == 0.25 && out.age == 1.0 && out.strength == 2.0);
+    g_assert_true(pose_def_between(&old, &flat, 0.25, &out));
+    g_assert_true(out.kind == POSE_WITHERED && out.blend == 0.75 && out.age == 1.0);
+    PoseDef young = old;
+    young.age = 0.2;
+    young.blend = 0.5;
+    g_assert_true(pose_def_between(&young, &old, 0.5, &out));
+    g_assert_cmpfloat_with_epsilon(out.age, 0.6, 1e-12);
+    g_assert_cmpfloat_with_epsilon(out.blend, 0.75, 1e-12);
+    g_assert_false(pose_def_between(&rules, &old, 0.5, &out));
+    PoseDef cupped = old;
+    cupped.kind = POSE_CUPPED;
+    g_assert_false(pose_def_between(&cupped, &old, 0.5, &out));
+    cupped.blend = 0.0;
+    g_assert_true(pose_def_between(&cupped, &old, 0.5, &out));
+    g_assert_true(out.kind == POSE_WITHERED && out.blend == 0.5);
+}
+
 /* A vein's unevenness is its own: it doesn't change when another, shorter vein is taken off the leaf. */
 static void test_stable_seed(void)
 {
@@ -858,6 +954,9 @@ int main(int argc, char **argv)
     g_test_add_func("/pose/ready/symmetry", test_symmetry);
     g_test_add_func("/pose/ready/meaning", test_meaning);
     g_test_add_func("/pose/ready/withered", test_withered);
+    g_test_add_func("/pose/ready/withered/fold", test_withered_fold);
+    g_test_add_func("/pose/between", test_between);
+    g_test_add_func("/pose/between/def", test_def_between);
     g_test_add_func("/pose/ready/stable-seed", test_stable_seed);
     g_test_add_func("/pose/rules/bends", test_lift_turn_fold);
     g_test_add_func("/pose/rules/rotate", test_rotate_rule);
