@@ -82,7 +82,7 @@ VEN_API gboolean ven_write_frame(const VenLeaf *leaf, const char *dir, const cha
  * the scan, and <name>.ini, a parameter file that refers to both. */
 VEN_API gboolean ven_write_capture(const VenLeaf *leaf, const char *dir, const char *name, GError **error);
 
-/* A leaf from a network that was grown before or drawn: a GraphML file with node positions in segments, base at 0,0, and the margin; see
+/* A leaf from a network that was grown before or drawn: a GraphML file with node positions in segments and the margin, wherever it lies; see
  * the README. `params` give widths where the file has none, the maps, and what is shaped. */
 VEN_API VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed, GError **error);
 
@@ -136,6 +136,13 @@ VEN_API uint32_t ven_shape_vertices(const VenShape *shape);
 VEN_API uint32_t ven_shape_triangles(const VenShape *shape);
 VEN_API void ven_shape_vertex(const VenShape *shape, uint32_t vertex, double place[3], double normal[3]);
 VEN_API void ven_shape_triangle(const VenShape *shape, uint32_t triangle, uint32_t vertex[3]);
+
+/* Levels of detail there are, the full leaf included: at most mesh.levels. */
+VEN_API uint32_t ven_shape_levels(const VenShape *shape);
+
+/* Part of the blade's harmonic weights that did not fit into the joints a vertex may have, at worst and in the mean, and the number of joints;
+ * FALSE: the leaf has no rig. */
+VEN_API gboolean ven_shape_rig(const VenShape *shape, uint32_t *joints, double *worst_loss, double *mean_loss);
 
 G_END_DECLS
 

@@ -6,7 +6,7 @@
 // shape part3 leaflet --pose drooping --set pose.seed=4
 // size  1200 1100
 #include "common.inc"
-camera { location <0, 66, -40> look_at <0, -1, -1> angle 36 right x * image_width / image_height }
+camera { location <1.5, 66, -42> look_at <1.5, -1, -3> angle 31 right x * image_width / image_height }
 Sun(52, -40, 1.05 * <1, 0.97, 0.9>)
 Sky()
 plane { y, -9 pigment { rgb 0.6 } finish { ambient 0 diffuse 0.8 } }

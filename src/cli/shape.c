@@ -1,4 +1,5 @@
 /* venation shape: a bent leaf from a parameter file or a network. */
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/run.h"
@@ -60,6 +61,24 @@ static gboolean shape_and_write(Run *run, const char *dir, gpointer user, GError
     return *shape && ven_shape_write(*shape, dir, run->name, error);
 }
 
+static void summarise(const Run *run, const VenShape *shape)
+{
+    char *wanted = ven_params_get(run->params, "mesh.levels"), *rig = ven_params_get(run->params, "export.rig");
+    char *what = g_strdup_printf("%u veins carry %u vertices and %u triangles", ven_shape_veins(shape), ven_shape_vertices(shape),
+                                 ven_shape_triangles(shape));
+    uint32_t joints, levels = ven_shape_levels(shape);
+    double worst, mean;
+    run_summarise(run, what);
+    if (!run->args->quiet && levels < g_ascii_strtoull(wanted, NULL, 10))
+        fprintf(stderr, "%u of %s levels of detail: no coarser leaf is possible\n", levels, wanted);
+    if (!run->args->quiet && ven_shape_rig(shape, &joints, &worst, &mean))
+        fprintf(stderr, "rig: %u joint%s; %.1f %% of the weights left out, at worst %.0f %%%s\n", joints, cli_s(joints), 100.0 * mean, 100.0 * worst,
+                g_str_equal(rig, "4") ? " (--rig 8 leaves out less)" : "");
+    g_free(what);
+    g_free(wanted);
+    g_free(rig);
+}
+
 static int carry_out(Run *run, const ShapeArgs *a, VenShape **shape)
 {
     GError *error = NULL;
@@ -72,10 +91,7 @@ static int carry_out(Run *run, const ShapeArgs *a, VenShape **shape)
         status = run_write(run, shape_and_write, shape);
     if (status != 0)
         return status;
-    char *what = g_strdup_printf("%u veins carry %u vertices and %u triangles", ven_shape_veins(*shape), ven_shape_vertices(*shape),
-                                 ven_shape_triangles(*shape));
-    run_summarise(run, what);
-    g_free(what);
+    summarise(run, *shape);
     return run->args->json ? run_print_record(ven_shape_record(*shape)) : 0;
 }
 

@@ -11,7 +11,8 @@ static const struct {
     {"k", "edge", "kind", "string"}, {"o", "edge", "order", "int"},     {"r", "edge", "rank", "int"},
     {"v", "edge", "vein", "int"},    {"w", "edge", "width", "double"},  {"f", "edge", "flow", "double"},
     {"b", "edge", "birth", "int"},   {"l", "edge", "length", "double"},
-    {"m", "graph", "margin", "string"}, {"s", "graph", "steps", "int"},
+    {"m", "graph", "margin", "string"}, {"base", "graph", "base", "string"},
+    {"tip", "graph", "tip", "string"}, {"s", "graph", "steps", "int"},
 };
 
 /* Strings of known length: a leaf may have a million edges. */
@@ -48,6 +49,11 @@ static void put_graph(const Network *net, GString *s)
             g_string_append_c(s, ',');
             sink_millionths(s, net->margin->v[i].y);
         }
+        PUT(s, "</data>\n");
+    }
+    if (net->length > 0.0) {
+        PUT(s, "<data key=\"base\">0,0</data>\n<data key=\"tip\">0,");
+        sink_millionths(s, net->length);
         PUT(s, "</data>\n");
     }
     PUT(s, "<data key=\"s\">");

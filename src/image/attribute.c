@@ -27,9 +27,9 @@ static double value_at(const Attribute *a, uint32_t owner, uint32_t x, uint32_t 
 static void owner_row(uint32_t y, void *user)
 {
     const Attribute *a = user;
-    const uint32_t *owner = a->p->owner + (gsize)y * a->p->width;
-    const float *blade = a->p->net->margin != NULL ? a->p->blade + (gsize)y * a->p->width : NULL;
-    float *out = a->plane->px + (gsize)y * a->p->width;
+    const uint32_t *owner = label_row(a->p, &a->p->owner, y);
+    const float *blade = a->p->net->margin != NULL ? field_row(a->p, &a->p->blade, y) : NULL;
+    float *out = plane_row(a->p, a->plane, y);
     for (uint32_t x = 0; x < a->p->width; x++) /* veins end at the margin */
         if ((owner[x] & OWNER_BESIDE) == 0 && (blade == NULL || blade[x] >= 0.5f))
             out[x] = (float)value_at(a, owner[x], x, y);
@@ -38,17 +38,21 @@ static void owner_row(uint32_t y, void *user)
 static void distance_row(uint32_t y, void *user)
 {
     const Attribute *a = user;
-    const float *away = a->p->away + (gsize)y * a->p->width;
-    float *out = a->plane->px + (gsize)y * a->p->width;
+    const float *away = field_row(a->p, &a->p->away, y);
+    float *out = plane_row(a->p, a->plane, y);
     for (uint32_t x = 0; x < a->p->width; x++)
         out[x] = (float)((double)MAX(away[x], 0.0f) / a->p->frame.scale);
 }
 
-/* What white stands for. */
+/* What white stands for; of labels the largest there can be. */
 static double white(const Painter *p, MapId id)
 {
     double top = 1.0;
-    if (id == MAP_VEIN_WIDTH)
+    if (id == MAP_VEIN_ID)
+        top = p->net->n_veins;
+    else if (id == MAP_VEIN_ORDER)
+        top = 255.0;
+    else if (id == MAP_VEIN_WIDTH)
         top = p->widest;
     else if (id == MAP_AGE)
         top = p->steps;
@@ -60,24 +64,24 @@ static double white(const Painter *p, MapId id)
 Plane *paint_attribute(Painter *p, MapId id)
 {
     Plane *plane = painter_plane(p, id);
-    gsize n = (gsize)p->width * p->rows;
+    gsize n = (gsize)p->width * (p->y1 - p->y0);
     Attribute a = {p, id, plane};
+    plane->high = white(p, id);
     if (id == MAP_OPACITY) {
-        memcpy(plane->px, painter_blade(p), n * sizeof(float));
+        painter_blade(p);
+        memcpy(plane->px, field_row(p, &p->blade, p->y0), n * sizeof(float));
     } else if (id == MAP_VEIN_MASK) {
-        memcpy(plane->px, painter_cover(p), n * sizeof(float));
+        painter_cover(p);
+        memcpy(plane->px, field_row(p, &p->cover, p->y0), n * sizeof(float));
     } else if (id == MAP_DISTANCE) {
-        plane->high = white(p, id);
         painter_away(p);
         if (p->net->n_edges > 0)
-            painter_rows(p, distance_row, &a);
+            painter_rows(p, p->y0, p->y1, distance_row, &a);
     } else {
-        if (plane->kind == PLANE_DATA)
-            plane->high = white(p, id);
         painter_owner(p);
         if (p->net->margin != NULL)
             painter_blade(p);
-        painter_rows(p, owner_row, &a);
+        painter_rows(p, p->y0, p->y1, owner_row, &a);
     }
     return plane;
 }

@@ -4,8 +4,10 @@
 
 #include <stdint.h>
 
-/* Two box filters in a row along each axis, a tent of the given radius (pixels) each way; beyond the image lies 0. The
- * sums of a row or column run from its start whatever the threads, so results don't depend on them. */
-void image_blur(float *px, uint32_t width, uint32_t height, double radius, unsigned threads);
+#include "geom/parallel.h"
+
+/* Two box filters of 2 half + 1 pixels in a row along each axis, a tent; beyond the image lies 0. Whole numbers, 0 … 2^30, as
+ * their sums don't depend on where they begin: parts of an image come out as the whole does, but for 2 half rows at cut edges. */
+void image_blur(Pool *pool, int32_t *px, uint32_t width, uint32_t height, uint32_t half);
 
 #endif

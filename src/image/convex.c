@@ -161,12 +161,19 @@ void union_reset(Union *u)
 /* Cuts the polygon in `ping` if the half-plane cuts it at all. FALSE when nothing is left. */
 static bool cut(Union *u, Vec2 normal, double bound)
 {
-    bool cuts = false;
-    for (uint32_t i = 0; i < u->ping.n_v && !cuts; i++)
-        cuts = vec_dot(u->ping.v[i], normal) > bound;
+    bool cuts = false, leaves = false;
+    for (uint32_t i = 0; i < u->ping.n_v && !(cuts && leaves); i++) {
+        bool beyond = vec_dot(u->ping.v[i], normal) > bound;
+        cuts = cuts || beyond;
+        leaves = leaves || !beyond;
+    }
     if (!cuts)
         return true;
     rings_reset(&u->pong);
+    if (!leaves) {
+        rings_reset(&u->ping);
+        return false;
+    }
     clip(u->ping.v, u->ping.n_v, normal, bound, &u->pong);
     Rings swap = u->ping;
     u->ping = u->pong;
@@ -175,11 +182,11 @@ static bool cut(Union *u, Vec2 normal, double bound)
 }
 
 /* Sides of the regular polygon that stands for a disc: the area between it and the disc, along one pixel, stays below
- * about 1e-5; see also the radius in cut_disc. */
+ * about 1e-4; see also the radius in cut_disc. */
 static uint32_t disc_sides(double r)
 {
     uint32_t n = 8;
-    while (n < CIRCLE / 2 && (double)n * n * n < 1000000.0 * r * r)
+    while (n < CIRCLE / 2 && (double)n * n * n < 100000.0 * r * r)
         n *= 2;
     return n;
 }
@@ -334,10 +341,29 @@ static void rank_parts(Union *u, uint32_t first, uint32_t last)
     }
 }
 
+/* Area of what two parts have in common. */
+static double shared(Union *u, uint32_t i, uint32_t j)
+{
+    uint32_t s = ring_start(&u->part, i), k = ring_start(&u->part, j), m = u->part.end[j] - k;
+    const Vec2 *knife = u->part.v + k;
+    if (apart(u->part.v + s, u->part.end[i] - s, knife, m))
+        return 0.0;
+    rings_reset(&u->ping);
+    rings_copy(&u->ping, u->part.v + s, u->part.end[i] - s);
+    for (uint32_t e = 0; e < m; e++) {
+        Vec2 along = vec_sub(knife[e + 1 < m ? e + 1 : 0], knife[e]), outer = vec2(along.y, -along.x);
+        if (!cut(u, outer, vec_dot(knife[e], outer)))
+            return 0.0;
+    }
+    return ring_area(u->ping.v, u->ping.n_v);
+}
+
 /* What of part i no part ranked before it hides. */
 static double unhidden(Union *u, uint32_t place)
 {
     uint32_t i = u->rank[place], s = ring_start(&u->part, i);
+    if (place == 1)
+        return MAX(u->size[1] - shared(u, i, u->rank[0]), 0.0);
     rings_reset(&u->rest);
     rings_copy(&u->rest, u->part.v + s, u->part.end[i] - s);
     for (uint32_t j = 0; j < place && u->rest.n > 0; j++) {

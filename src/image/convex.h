@@ -49,7 +49,7 @@ void union_add(Union *u, const Capsule *k, StrokeCut cut, Vec2 corner);
  * which runs along d0, and before the second, which runs along d1. */
 void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec2 corner);
 
-/* Area covered, 0 … 1. About 1e-5 exact. */
+/* Area covered, 0 … 1. About 1e-4 exact. */
 double union_area(Union *u);
 
 /* The same of what lies within a polygon, convex or not, of n points in image coordinates; `corner` is the pixel's. */

@@ -2,7 +2,6 @@
 #include <glib.h>
 #include <string.h>
 
-#include "geom/parallel.h"
 #include "image/painter.h"
 
 /* ---- veins ---- */
@@ -66,26 +65,15 @@ static void add_wedge(Union *u, const Stroke *s, Vec2 corner)
         union_add_wedge(u, k->a, k->ra, s->before, k->d, corner);
 }
 
-static Vec2 to_image(const Painter *p, Vec2 v)
-{
-    return vec2((v.x - p->frame.corner.x) * p->frame.scale, (p->frame.corner.y - v.y) * p->frame.scale);
-}
-
 static void tile_blade(Tile *t, TileBox box)
 {
-    const Polygon *m = t->p->net->margin;
-    Vec2 *v = g_new(Vec2, m->n);
-    for (uint32_t i = 0; i < m->n; i++)
-        v[i] = to_image(t->p, m->v[i]);
-    ring_within(v, m->n, (Box2){box.x0, box.y0, box.x1, box.y1}, &t->blade, &t->spare);
+    ring_within(t->p->margin, t->p->n_margin, (Box2){box.x0, box.y0, box.x1, box.y1}, &t->blade, &t->spare);
     t->has_blade = true;
-    g_free(v);
 }
 
 /* Veins end at the margin: what a first node on it or a wide vein in a narrow base has beyond is of the petiole. */
-static float pixel_cover(Tile *t, TileBox box, uint32_t pixel, Vec2 corner)
+static float pixel_cover(Tile *t, TileBox box, uint32_t pixel, Vec2 corner, float blade)
 {
-    float blade = t->p->net->margin != NULL ? t->p->blade[(gsize)corner.y * t->p->width + (gsize)corner.x] : 1.0f;
     if (blade == 0.0f || t->full[pixel])
         return blade;
     if (t->head[pixel] == NONE)
@@ -122,9 +110,12 @@ static void cover_tiles(uint32_t first, uint32_t last, void *user)
         t->has_blade = false;
         for (uint32_t i = from; i < to; i++)
             tile_enter(t, box, p->bins.item[i]);
-        for (uint32_t y = box.y0; y < box.y1; y++)
+        for (uint32_t y = box.y0; y < box.y1; y++) {
+            const float *blade = p->net->margin != NULL ? field_row(p, &p->blade, y) : NULL;
+            float *out = field_row(p, &p->cover, y);
             for (uint32_t x = box.x0; x < box.x1; x++)
-                p->cover[(gsize)y * p->width + x] = pixel_cover(t, box, (y - box.y0) * TILE + x - box.x0, vec2(x, y));
+                out[x] = pixel_cover(t, box, (y - box.y0) * TILE + x - box.x0, vec2(x, y), blade != NULL ? blade[x] : 1.0f);
+        }
     }
     union_clear(&t->area);
     rings_clear(&t->blade);
@@ -135,19 +126,14 @@ static void cover_tiles(uint32_t first, uint32_t last, void *user)
 
 const float *painter_cover(Painter *p)
 {
-    if (p->cover == NULL) {
-        painter_strokes(p);
-        if (p->net->margin != NULL)
-            painter_blade(p);
-        p->cover = g_new0(float, (gsize)p->width * p->rows);
-        parallel_for(p->style.threads, p->bins.nx * p->bins.ny, 16, cover_tiles, p);
-    }
-    return p->cover;
+    painter_strokes(p);
+    if (p->net->margin != NULL)
+        painter_blade(p);
+    painter_tiles(p, &p->bins, field_begin(p, &p->cover), cover_tiles, p);
+    return p->cover.px;
 }
 
 /* ---- blade ---- */
-
-enum { BAND = 64 }; /* rows per part */
 
 /* Adds the signed area to the right of the part of a segment within row y (0 <= its y <= 1) to the sums of its pixels.
  * sum[x] gathers what pixel x gets beyond what all pixels right of an edge get, so that prefix sums give areas. */
@@ -184,60 +170,45 @@ static void add_segment(double *sum, uint32_t width, Vec2 a, Vec2 b)
     }
 }
 
-/* One edge's share of rows y0 … y1-1. */
-static void add_edge(double *sum, uint32_t width, uint32_t y0, uint32_t y1, Vec2 a, Vec2 b)
+/* One edge's share of row y. */
+static void add_edge(double *sum, uint32_t width, uint32_t y, Vec2 a, Vec2 b)
 {
-    double low = MIN(a.y, b.y), high = MAX(a.y, b.y);
-    if (high <= y0 || low >= y1 || low == high)
+    double low = MAX(MIN(a.y, b.y), (double)y), high = MIN(MAX(a.y, b.y), y + 1.0);
+    if (!(high > low))
         return;
-    uint32_t first, last;
-    pixels_touched((Span){low, high}, y0, y1, &first, &last);
-    for (uint32_t y = first; y < last; y++) {
-        double t0 = MAX(low, (double)y), t1 = MIN(high, y + 1.0);
-        if (!(t1 > t0))
-            continue;
-        double from = a.y < b.y ? t0 : t1, to = a.y < b.y ? t1 : t0, k = (b.x - a.x) / (b.y - a.y);
-        Vec2 p = {from == a.y ? a.x : a.x + (from - a.y) * k, from}, q = {to == b.y ? b.x : a.x + (to - a.y) * k, to};
-        /* parts left of the image count in full, parts right of it not at all */
-        if (MAX(p.x, q.x) <= 0.0)
-            sum[(gsize)(y - y0) * (width + 2)] += to - from;
-        else
-            add_segment(sum + (gsize)(y - y0) * (width + 2), width, p, q);
-    }
+    double from = a.y < b.y ? low : high, to = a.y < b.y ? high : low, k = (b.x - a.x) / (b.y - a.y);
+    Vec2 p = {from == a.y ? a.x : a.x + (from - a.y) * k, from}, q = {to == b.y ? b.x : a.x + (to - a.y) * k, to};
+    /* parts left of the image count in full, parts right of it not at all */
+    if (MAX(p.x, q.x) <= 0.0)
+        sum[0] += to - from;
+    else
+        add_segment(sum, width, p, q);
 }
 
-static void blade_band(uint32_t first, uint32_t last, void *user)
+static void blade_row(uint32_t y, void *user)
 {
     const Painter *p = user;
-    const Polygon *m = p->net->margin;
-    gsize stride = (gsize)p->width + 2;
-    double *sum = g_new0(double, stride *(last - first));
-    for (uint32_t i = 0; i < m->n; i++) {
-        Vec2 a = m->v[i], b = m->v[i + 1 < m->n ? i + 1 : 0];
-        add_edge(sum, p->width, first, last, to_image(p, a), to_image(p, b));
-    }
-    for (uint32_t y = first; y < last; y++) {
-        double area = 0.0;
-        for (uint32_t x = 0; x < p->width; x++) {
-            area += sum[(y - first) * stride + x];
-            double part = fabs(area);
-            /* what rounding leaves of sums that cancel */
-            p->blade[(gsize)y * p->width + x] = part < 1e-7 ? 0.0f : part > 1.0 - 1e-7 ? 1.0f : (float)part;
-        }
+    double *sum = g_new0(double, (gsize)p->width + 2), area = 0.0;
+    for (uint32_t i = 0; i < p->n_margin; i++)
+        add_edge(sum, p->width, y, p->margin[i], p->margin[i + 1 < p->n_margin ? i + 1 : 0]);
+    float *out = field_row(p, &p->blade, y);
+    for (uint32_t x = 0; x < p->width; x++) {
+        area += sum[x];
+        double part = fabs(area);
+        /* what rounding leaves of sums that cancel */
+        out[x] = part < 1e-7 ? 0.0f : part > 1.0 - 1e-7 ? 1.0f : (float)part;
     }
     g_free(sum);
 }
 
 const float *painter_blade(Painter *p)
 {
-    if (p->blade != NULL)
-        return p->blade;
-    gsize n = (gsize)p->width * p->rows;
-    if (p->net->margin == NULL) { /* veins without a blade */
-        p->blade = g_memdup2(painter_cover(p), n * sizeof(float));
-        return p->blade;
+    uint32_t from = field_begin(p, &p->blade);
+    if (from < p->bottom && p->net->margin != NULL) {
+        painter_rows(p, from, p->bottom, blade_row, p);
+    } else if (from < p->bottom) { /* veins without a blade */
+        painter_cover(p);
+        memcpy(field_row(p, &p->blade, from), field_row(p, &p->cover, from), (gsize)(p->bottom - from) * p->width * sizeof(float));
     }
-    p->blade = g_new0(float, n);
-    parallel_for(p->style.threads, p->rows, BAND, blade_band, p);
-    return p->blade;
+    return p->blade.px;
 }

@@ -22,26 +22,15 @@ static double srgb_at(const double *curve, double x)
     return curve[i] + (curve[i + 1] - curve[i]) * (x * CURVE - i);
 }
 
-static float label_max(const Plane *p)
-{
-    float top = 0.0f;
-    gsize n = (gsize)p->width * p->height * p->channels;
-    for (gsize i = 0; i < n; i++)
-        if (p->px[i] > top)
-            top = p->px[i];
-    return top;
-}
-
 void encoder_init(Encoder *e, const Plane *p, int depth)
 {
     *e = (Encoder){depth == 16 ? 16 : 8, p->channels, FALSE, NULL};
     if (p->kind == PLANE_LABEL) {
-        float top = label_max(p);
-        e->packed = top > 65535.0f && p->channels == 1;
+        e->packed = p->high > 65535.0 && p->channels == 1;
         if (e->packed) {
             e->channels = 3;
             e->depth = 8;
-        } else if (top > 255.0f) {
+        } else if (p->high > 255.0) {
             e->depth = 16;
         }
     }

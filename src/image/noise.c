@@ -34,19 +34,57 @@ static double fade(double t)
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
+/* Along a row through a cell the mix of its corners' slopes is a straight line beside either upright side. */
+typedef struct {
+    double at0, slope0, at1, slope1; /* of the left side's, at it; of the right side's, at it */
+} Cut;
+
+static Cut cut_at(const Noise *n, uint32_t ix, uint32_t iy, double y)
+{
+    const float *g = n->gradient + 2 * ((gsize)iy * n->nx + ix), *h = g + 2 * (gsize)n->nx;
+    double v = fade(y), low0 = (double)g[1] * y, high0 = (double)h[1] * (y - 1.0), low1 = (double)g[3] * y, high1 = (double)h[3] * (y - 1.0);
+    return (Cut){low0 + (high0 - low0) * v, (double)g[0] + (double)(h[0] - g[0]) * v, low1 + (high1 - low1) * v,
+                 (double)g[2] + (double)(h[2] - g[2]) * v};
+}
+
+static double across(const Cut *c, double x)
+{
+    double left = c->at0 + c->slope0 * x, right = c->at1 + c->slope1 * (x - 1.0);
+    return left + (right - left) * fade(x);
+}
+
+/* Cell of a lattice with n points a side, and the place in it. */
+static uint32_t cell(double *x, uint32_t n)
+{
+    uint32_t i = (uint32_t)CLAMP(*x, 0.0, n - 2.0);
+    *x -= i;
+    return i;
+}
+
 double noise_at(const Noise *n, Vec2 p)
 {
     if (!(n->weight > 0.0))
         return 0.0;
     double x = p.x / n->wavelength - (double)n->x0, y = p.y / n->wavelength - (double)n->y0;
-    double fx = floor(x), fy = floor(y);
-    uint32_t ix = (uint32_t)CLAMP(fx, 0.0, n->nx - 2.0), iy = (uint32_t)CLAMP(fy, 0.0, n->ny - 2.0);
-    x -= ix;
-    y -= iy;
-    const float *g = n->gradient + 2 * ((gsize)iy * n->nx + ix), *h = g + 2 * (gsize)n->nx;
-    double a = (double)g[0] * x + (double)g[1] * y, b = (double)g[2] * (x - 1.0) + (double)g[3] * y;
-    double c = (double)h[0] * x + (double)h[1] * (y - 1.0), d = (double)h[2] * (x - 1.0) + (double)h[3] * (y - 1.0);
-    double u = fade(x), v = fade(y);
-    double low = a + (b - a) * u, high = c + (d - c) * u;
-    return 1.6 * n->weight * (low + (high - low) * v);
+    uint32_t ix = cell(&x, n->nx), iy = cell(&y, n->ny);
+    Cut c = cut_at(n, ix, iy, y);
+    return 1.6 * n->weight * across(&c, x);
+}
+
+void noise_row(const Noise *n, Vec2 start, double step, uint32_t first, uint32_t last, float *out)
+{
+    if (!(n->weight > 0.0))
+        return;
+    double x0 = start.x / n->wavelength - (double)n->x0, y = start.y / n->wavelength - (double)n->y0, gain = 1.6 * n->weight;
+    uint32_t iy = cell(&y, n->ny), ix = n->nx;
+    Cut c = {0};
+    step /= n->wavelength;
+    for (uint32_t i = first; i < last; i++) {
+        double x = x0 + i * step;
+        uint32_t at = cell(&x, n->nx);
+        if (at != ix)
+            c = cut_at(n, at, iy, y);
+        ix = at;
+        out[i] = (float)(gain * across(&c, x));
+    }
 }

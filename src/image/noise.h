@@ -19,4 +19,7 @@ void noise_clear(Noise *n);
 /* About -1 … 1, 0 on average. */
 double noise_at(const Noise *n, Vec2 p);
 
+/* The same at start + (i step, 0) for i from first to last-1, into out[i]. */
+void noise_row(const Noise *n, Vec2 start, double step, uint32_t first, uint32_t last, float *out);
+
 #endif

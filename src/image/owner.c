@@ -1,7 +1,6 @@
 /* Which vein a pixel belongs to. */
 #include <glib.h>
 
-#include "geom/parallel.h"
 #include "image/painter.h"
 
 /* A pixel belongs to a vein when its centre lies in the vein drawn at least one pixel wide: so a thin vein gives an
@@ -63,22 +62,20 @@ static void claim_tiles(uint32_t first, uint32_t last, void *user)
             best[i].stroke = OWNER_NONE;
         for (uint32_t i = p->bins.start[tile]; i < p->bins.start[tile + 1]; i++)
             claim_tile(p, box, p->bins.item[i], best);
-        for (uint32_t y = box.y0; y < box.y1; y++)
+        for (uint32_t y = box.y0; y < box.y1; y++) {
+            uint32_t *out = label_row(p, &p->owner, y);
             for (uint32_t x = box.x0; x < box.x1; x++) {
                 const Claim *c = &best[(y - box.y0) * TILE + x - box.x0];
-                bool next_to = c->stroke != OWNER_NONE && !c->within;
-                p->owner[(gsize)y * p->width + x] = next_to ? c->stroke | OWNER_BESIDE : c->stroke;
+                out[x] = c->stroke != OWNER_NONE && !c->within ? c->stroke | OWNER_BESIDE : c->stroke;
             }
+        }
     }
     g_free(best);
 }
 
 const uint32_t *painter_owner(Painter *p)
 {
-    if (p->owner == NULL) {
-        painter_strokes(p);
-        p->owner = g_new(uint32_t, (gsize)p->width * p->rows);
-        parallel_for(p->style.threads, p->bins.nx * p->bins.ny, 16, claim_tiles, p);
-    }
-    return p->owner;
+    painter_strokes(p);
+    painter_tiles(p, &p->bins, field_begin(p, &p->owner), claim_tiles, p);
+    return p->owner.px;
 }

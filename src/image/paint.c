@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "geom/dmath.h"
-#include "geom/parallel.h"
 #include "image/painter.h"
 
 static const MapInfo infos[MAP_COUNT] = {
@@ -66,7 +65,7 @@ PaintStyle paint_style_default(void)
 
 /* As wide as a part of the blade is narrow (area over perimeter is half the width of a strip), on broad blades of the
  * leaf's length. */
-static double band_width(const Painter *p)
+static double rim_width(const Painter *p)
 {
     const Polygon *m = p->net->margin;
     double around = 0.0;
@@ -111,42 +110,113 @@ static void survey(Painter *p)
     }
     double area = net->margin != NULL ? net->margin->area : 0.0;
     p->stout = stout_width(net, p->widest);
-    p->band = band_width(p);
+    p->rim = rim_width(p);
     p->spacing = length > 0.0 && area > 0.0 ? area / length : 1.0;
     p->steps = net->n_steps;
 }
 
+static void take_margin(Painter *p)
+{
+    const Polygon *m = p->net->margin;
+    p->n_margin = m != NULL ? m->n : 0;
+    p->margin = g_new(Vec2, p->n_margin + 1);
+    p->edge = g_new(Capsule, p->n_margin + 1);
+    for (uint32_t i = 0; i < p->n_margin; i++)
+        p->margin[i] = painter_to_image(p, m->v[i]);
+    for (uint32_t i = 0; i < p->n_margin; i++)
+        p->edge[i] = capsule_new(p->margin[i], 0.0, p->margin[i + 1 < p->n_margin ? i + 1 : 0], 0.0);
+}
+
 Painter *painter_new(const Network *net, const Frame *frame, const PaintStyle *style)
 {
+    static const double usual_size = 2048.0; /* of the maps that style.padding speaks of, pixels */
     Painter *p = g_new0(Painter, 1);
     p->net = net;
     p->frame = *frame;
     p->style = *style;
+    p->pool = pool_new(style->threads);
     p->width = frame->width;
     p->rows = frame->height;
+    p->padding = style->padding * MAX(p->width, p->rows) / usual_size;
     p->circle = circle_new();
+    take_margin(p);
     survey(p);
+    painter_band(p, 0, p->rows);
     return p;
+}
+
+/* All fields, for what is done with each alike. */
+enum { N_FIELDS = 10 + N_NOISE };
+
+static void list_fields(Painter *p, Field *list[N_FIELDS])
+{
+    Field *all[] = {&p->cover, &p->blade, &p->owner, &p->away, &p->inset, &p->side, &p->bulge, &p->crease, &p->nearness, &p->arch};
+    memcpy(list, all, sizeof all);
+    for (int i = 0; i < N_NOISE; i++)
+        list[N_FIELDS - N_NOISE + i] = &p->grain[i];
 }
 
 void painter_free(Painter *p)
 {
     if (p == NULL)
         return;
+    Field *field[N_FIELDS];
+    list_fields(p, field);
+    for (int i = 0; i < N_FIELDS; i++)
+        g_free(field[i]->px);
+    for (int i = 0; i < N_NOISE && p->has_noise; i++)
+        noise_clear(&p->noise[i]);
     strokes_free(p->strokes);
+    strokes_free(p->ridges);
     bins_clear(&p->bins);
+    bins_clear(&p->ridge_bins);
+    bins_clear(&p->edge_bins);
+    nearest_free(p->to_vein);
+    nearest_free(p->to_edge);
+    pool_free(p->pool);
     g_free(p->circle);
-    g_free(p->cover);
-    g_free(p->blade);
-    g_free(p->owner);
-    g_free(p->away);
-    g_free(p->inset);
-    g_free(p->vein_height);
-    g_free(p->halo);
-    g_free(p->arch);
-    g_free(p->height);
-    g_free(p->source);
+    g_free(p->margin);
+    g_free(p->edge);
     g_free(p);
+}
+
+/* ---- bands ---- */
+
+void painter_band(Painter *p, uint32_t y0, uint32_t y1)
+{
+    uint32_t reach = arch_reach(p) + 1; /* normals look one row further */
+    uint32_t top = (y0 > reach ? y0 - reach : 0) / TILE * TILE;
+    uint32_t bottom = MIN((y1 + reach + TILE - 1) / TILE * TILE, p->rows);
+    Field *field[N_FIELDS];
+    list_fields(p, field);
+    for (int i = 0; i < N_FIELDS; i++) {
+        Field *f = field[i];
+        if (f->px == NULL)
+            continue;
+        gsize row = (gsize)p->width * sizeof(float);
+        bool keep = top >= p->top && f->done > top;
+        f->done = keep ? MIN(f->done, bottom) : top;
+        if (keep)
+            memmove(f->px, (char *)f->px + (top - p->top) * row, (f->done - top) * row);
+        f->px = g_realloc(f->px, (bottom - top) * row);
+    }
+    p->arch.done = top; /* it has no rows to spare */
+    p->y0 = y0;
+    p->y1 = y1;
+    p->top = top;
+    p->bottom = bottom;
+}
+
+uint32_t field_begin(const Painter *p, Field *f)
+{
+    if (f->px == NULL) {
+        f->px = g_new(float, (gsize)(p->bottom - p->top) * p->width);
+        f->done = p->top;
+    }
+    uint32_t from = f->done;
+    memset(field_row(p, f, from), 0, (gsize)(p->bottom - from) * p->width * sizeof(float));
+    f->done = p->bottom;
+    return from;
 }
 
 /* A stroke with room for the pixels beside it. */
@@ -159,7 +229,7 @@ static Capsule stroke_area(uint32_t i, const void *user)
 const Strokes *painter_strokes(Painter *p)
 {
     if (p->strokes == NULL) {
-        p->strokes = strokes_new(p->net, &p->frame, (StrokeTolerance){0.02, 0.0});
+        p->strokes = strokes_new(p->net, &p->frame, (StrokeTolerance){0.04, 0.0});
         bins_init(&p->bins, p->width, p->rows, p->strokes->n, stroke_area, p->strokes);
     }
     return p->strokes;
@@ -168,27 +238,45 @@ const Strokes *painter_strokes(Painter *p)
 Plane *painter_plane(const Painter *p, MapId id)
 {
     const MapInfo *info = &infos[id];
-    Plane *plane = plane_new(p->width, p->rows, info->channels, info->kind);
+    Plane *plane = plane_new(p->width, p->y1 - p->y0, info->channels, info->kind);
     plane->unit = info->unit;
     return plane;
 }
 
+/* ---- loops ---- */
+
 typedef struct {
-    void (*fn)(uint32_t y, void *user);
+    void (*row)(uint32_t y, void *user);
+    LoopFn range;
     void *user;
-} RowLoop;
+    uint32_t from; /* row, or tile */
+} Loop;
 
 static void run_rows(uint32_t first, uint32_t last, void *user)
 {
-    const RowLoop *loop = user;
+    const Loop *loop = user;
     for (uint32_t y = first; y < last; y++)
-        loop->fn(y, loop->user);
+        loop->row(loop->from + y, loop->user);
 }
 
-void painter_rows(const Painter *p, void (*fn)(uint32_t y, void *user), void *user)
+void painter_rows(const Painter *p, uint32_t y0, uint32_t y1, void (*fn)(uint32_t y, void *user), void *user)
 {
-    RowLoop loop = {fn, user};
-    parallel_for(p->style.threads, p->rows, 16, run_rows, &loop);
+    Loop loop = {.row = fn, .user = user, .from = y0};
+    pool_for(p->pool, y1 - y0, 4, run_rows, &loop);
+}
+
+static void run_tiles(uint32_t first, uint32_t last, void *user)
+{
+    const Loop *loop = user;
+    loop->range(loop->from + first, loop->from + last, loop->user);
+}
+
+void painter_tiles(Painter *p, const Bins *bins, uint32_t from, LoopFn fn, void *user)
+{
+    uint32_t first = from / TILE * bins->nx, last = (p->bottom + TILE - 1) / TILE * bins->nx;
+    Loop loop = {.range = fn, .user = user, .from = first};
+    if (from < p->bottom)
+        pool_for(p->pool, last - first, 8, run_tiles, &loop);
 }
 
 Plane *painter_paint(Painter *p, MapId id)
@@ -223,22 +311,22 @@ static void ink_row(uint32_t y, void *user)
 {
     const Ink *k = user;
     const Painter *p = k->p;
+    const float *cover = field_row(p, &p->cover, y), *blade = field_row(p, &p->blade, y), *inset = field_row(p, &p->inset, y);
+    float *out = plane_row(p, k->plane, y);
     for (uint32_t x = 0; x < p->width; x++) {
-        gsize at = (gsize)y * p->width + x;
         double paper = 1.0;
         if (p->net->margin != NULL) /* just inside the margin, so that the line ends where the blade does */
-            paper -= 0.5 * (double)p->blade[at] * CLAMP(k->line + 0.5 - (double)p->inset[at], 0.0, 1.0);
-        k->plane->px[at] = (float)(paper * (1.0 - (double)p->cover[at]));
+            paper -= 0.5 * (double)blade[x] * CLAMP(k->line + 0.5 - (double)inset[x], 0.0, 1.0);
+        out[x] = (float)(paper * (1.0 - (double)cover[x]));
     }
 }
 
 Plane *painter_veins(Painter *p)
 {
     double size = MAX(p->width, p->rows);
-    Ink k = {p, plane_new(p->width, p->rows, 1, PLANE_DATA), CLAMP(1.5 * size / 2048.0, 0.75, LINE_REACH - 1.0)};
+    Ink k = {p, plane_new(p->width, p->y1 - p->y0, 1, PLANE_DATA), CLAMP(1.5 * size / 2048.0, 0.75, LINE_REACH - 1.0)};
     painter_cover(p);
-    painter_blade(p);
     painter_inset(p);
-    painter_rows(p, ink_row, &k);
+    painter_rows(p, p->y0, p->y1, ink_row, &k);
     return k.plane;
 }

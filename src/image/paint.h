@@ -3,6 +3,7 @@
 #define IMAGE_PAINT_H
 
 #include "geom/vec.h"
+#include "image/photo.h"
 #include "image/plane.h"
 #include "sim/network.h"
 
@@ -51,11 +52,12 @@ Frame frame_fit(Box2 box, uint32_t size, bool square, double border);
 typedef struct {
     float lamina[3], vein[3], abaxial_lamina[3], abaxial_vein[3], margin[3];
     double variation, relief, gloss, thickness;
-    uint32_t padding; /* pixels */
+    uint32_t padding; /* pixels in maps of 2048; larger maps have more */
     uint64_t seed;    /* of the colour variation */
     unsigned threads; /* 0: all processors */
     const Network *reference; /* network whose widths, density and steps set the scale of values and colours, so that frames of
                                * one run compare; NULL: the painted one's own. Outlives the painter. */
+    const Photo *photo[2];    /* colours of the sunny and the shadow side instead of painted ones; NULL: painted. Outlive the painter. */
 } PaintStyle;
 
 PaintStyle paint_style_default(void);
@@ -68,6 +70,10 @@ typedef struct Painter Painter;
 /* Prepares a network for painting in a frame; both must outlive the painter. The result depends on network, frame and style alone, not on threads. */
 Painter *painter_new(const Network *net, const Frame *frame, const PaintStyle *style);
 void painter_free(Painter *p);
+
+/* Says which rows of the image, y0 … y1-1, the next planes show; at first they are all. Pixels are the same in any bands. Going down
+ * the image band by band computes everything once and needs memory for the rows of a band and a few around it. */
+void painter_band(Painter *p, uint32_t y0, uint32_t y1);
 
 /* Paints one map; the shared parts (coverage, nearest vein, distance) are computed once and kept in the painter. */
 Plane *painter_paint(Painter *p, MapId id);

@@ -14,7 +14,8 @@ typedef enum {
 typedef struct {
     uint32_t width, height, channels;
     PlaneKind kind;
-    double low, high; /* what black and white stand for in PNG (data planes); EXR holds the values themselves */
+    double low, high; /* what black and white stand for in PNG (data planes); EXR holds the values themselves. Labels: high is the
+                       * largest there can be */
     const char *unit; /* of low and high, for the metadata: "segments", "steps", "" */
     float *px;        /* [height][width][channels] */
 } Plane;

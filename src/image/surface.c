@@ -1,6 +1,5 @@
 /* The shape of the blade: height, normals, ambient occlusion, thickness. */
 #include <glib.h>
-#include <string.h>
 
 #include "image/blur.h"
 #include "image/painter.h"
@@ -17,133 +16,137 @@ static double arch_depth(const Painter *p)
     return 0.1 * p->style.relief * p->spacing;
 }
 
+/* Depth of the stoutest veins below the blade on the sunny side, segments. */
+static double groove_depth(const Painter *p)
+{
+    return 0.18 * p->style.relief * p->stout;
+}
+
+/* ---- the arch between veins ---- */
+
+/* Blurred a little, as the distance to a vein has creases in the middle of a mesh. */
+static uint32_t arch_blur(const Painter *p)
+{
+    return (uint32_t)CLAMP(0.08 * p->spacing * p->frame.scale + 0.5, 0.0, 4096.0);
+}
+
+uint32_t arch_reach(const Painter *p)
+{
+    return 2 * arch_blur(p);
+}
+
+enum { ARCH_ONE = 1 << 24 }; /* stands for 1 in whole numbers */
+
 typedef struct {
     Painter *p;
-    Plane *plane;
-    float *z;                /* the surface in question, segments */
-    float *sum, *weight;     /* blurred surface and blade */
-    double radius, strength; /* of occlusion: width of the blur, segments */
-} Surface;
-
-static void mask_row(uint32_t y, void *user)
-{
-    const Surface *s = user;
-    for (uint32_t x = 0; x < s->p->width; x++) {
-        gsize at = (gsize)y * s->p->width + x;
-        s->weight[at] = s->p->blade[at] > 0.0f ? 1.0f : 0.0f;
-    }
-}
-
-/* Blurs z, which is 0 beyond the blade, into sum and the blade into weight. */
-static void blur_surface(const Surface *s, double radius)
-{
-    Painter *p = s->p;
-    memcpy(s->sum, s->z, (gsize)p->width * p->rows * sizeof(float));
-    painter_rows(p, mask_row, (void *)s);
-    image_blur(s->sum, p->width, p->rows, radius, p->style.threads);
-    image_blur(s->weight, p->width, p->rows, radius, p->style.threads);
-}
+    int32_t *arch, *blade;
+} Arch;
 
 /* Steep beside the veins, level in the middle of a mesh. */
 static void arch_row(uint32_t y, void *user)
 {
-    const Surface *s = user;
-    const Painter *p = s->p;
+    const Arch *a = user;
+    const Painter *p = a->p;
+    const float *away = field_row(p, &p->away, y), *blade = field_row(p, &p->blade, y);
+    gsize row = (gsize)(y - p->top) * p->width;
+    double gain = 1.0 / (0.5 * p->spacing * p->frame.scale);
     for (uint32_t x = 0; x < p->width; x++) {
-        gsize at = (gsize)y * p->width + x;
-        double rest = 1.0 - CLAMP((double)p->away[at] / (0.5 * p->spacing * p->frame.scale), 0.0, 1.0);
-        if (p->blade[at] > 0.0f)
-            p->arch[at] = (float)(1.0 - rest * rest);
+        double rest = 1.0 - CLAMP((double)away[x] * gain, 0.0, 1.0);
+        bool in = blade[x] > 0.0f;
+        a->blade[row + x] = in ? ARCH_ONE : 0;
+        a->arch[row + x] = in ? (int32_t)(ARCH_ONE * (1.0 - rest * rest)) : 0;
     }
 }
 
-static void smooth_row(uint32_t y, void *user)
+static void settle_row(uint32_t y, void *user)
 {
-    const Surface *s = user;
-    for (uint32_t x = 0; x < s->p->width; x++) {
-        gsize at = (gsize)y * s->p->width + x;
-        if (s->weight[at] > 0.0f && s->p->blade[at] > 0.0f)
-            s->p->arch[at] = s->sum[at] / s->weight[at];
-    }
+    const Arch *a = user;
+    const Painter *p = a->p;
+    float *out = field_row(p, &p->arch, y);
+    gsize row = (gsize)(y - p->top) * p->width;
+    for (uint32_t x = 0; x < p->width; x++)
+        if (a->blade[row + x] > 0)
+            out[x] = (float)((double)a->arch[row + x] / (double)a->blade[row + x]);
 }
 
-/* Blurred a little, as the distance to a vein has creases in the middle of a mesh. */
 const float *painter_arch(Painter *p)
 {
-    if (p->arch != NULL)
-        return p->arch;
-    gsize n = (gsize)p->width * p->rows;
     painter_away(p);
-    p->arch = g_new0(float, n);
-    Surface s = {.p = p, .z = p->arch, .sum = g_new(float, n), .weight = g_new(float, n)};
-    painter_rows(p, arch_row, &s);
-    blur_surface(&s, 0.16 * p->spacing * p->frame.scale);
-    painter_rows(p, smooth_row, &s);
-    g_free(s.sum);
-    g_free(s.weight);
-    return p->arch;
+    uint32_t from = field_begin(p, &p->arch);
+    if (from == p->bottom)
+        return p->arch.px;
+    gsize n = (gsize)p->width * (p->bottom - p->top);
+    Arch a = {p, g_new(int32_t, n), g_new(int32_t, n)};
+    painter_rows(p, p->top, p->bottom, arch_row, &a);
+    image_blur(p->pool, a.arch, p->width, p->bottom - p->top, arch_blur(p));
+    image_blur(p->pool, a.blade, p->width, p->bottom - p->top, arch_blur(p));
+    painter_rows(p, p->top, p->bottom, settle_row, &a);
+    g_free(a.arch);
+    g_free(a.blade);
+    return p->arch.px;
+}
+
+/* ---- maps ---- */
+
+typedef struct {
+    Painter *p;
+    Plane *plane;
+    double arch, bulge, groove; /* what the parts of a side's surface count, segments */
+} Surface;
+
+/* Parts of a row. */
+typedef struct {
+    const float *blade, *bulge, *arch, *nearness;
+} Row;
+
+static Row row_at(const Painter *p, uint32_t y)
+{
+    return (Row){field_row(p, &p->blade, y), field_row(p, &p->bulge, y), field_row(p, &p->arch, y), field_row(p, &p->nearness, y)};
+}
+
+static double height_at(const Surface *s, const Row *r, uint32_t x)
+{
+    double n = (double)r->nearness[x];
+    return s->bulge * (double)r->bulge[x] + s->arch * (double)r->arch[x] - s->groove * n * (0.5 + 0.5 * n);
 }
 
 static void height_row(uint32_t y, void *user)
 {
     const Surface *s = user;
+    Row r = row_at(s->p, y);
+    float *out = plane_row(s->p, s->plane, y);
+    Vec2 at;
     for (uint32_t x = 0; x < s->p->width; x++) {
-        gsize at = (gsize)y * s->p->width + x;
-        if (s->p->blade[at] > 0.0f)
-            s->z[at] = (float)((double)s->p->vein_height[at] - arch_depth(s->p) * (double)s->p->arch[at]);
+        if (r.blade[x] > 0.0f)
+            out[x] = (float)height_at(s, &r, x);
+        else if (painter_padded(s->p, x, y, &at))
+            out[x] = (float)s->arch;
     }
 }
 
-const float *painter_height(Painter *p)
+/* Slope from pixel a over `at` to b, each left out where it is not of the blade; segments per pixel. */
+static double slope(const Surface *s, const Row *ra, uint32_t xa, const Row *rb, uint32_t xb, double here)
 {
-    if (p->height == NULL) {
-        painter_vein_height(p);
-        painter_arch(p);
-        p->height = g_new0(float, (gsize)p->width * p->rows);
-        Surface s = {.p = p, .z = p->height};
-        painter_rows(p, height_row, &s);
-    }
-    return p->height;
-}
-
-/* The sunny side: arched between the veins, which sink in the more the larger they are. */
-static void adaxial_row(uint32_t y, void *user)
-{
-    const Surface *s = user;
-    double scale = 0.125 * s->p->style.relief * s->p->stout;
-    for (uint32_t x = 0; x < s->p->width; x++) {
-        gsize at = (gsize)y * s->p->width + x;
-        double v = (double)s->p->vein_height[at], sunk = v > 0.0 ? 0.35 * v * v / (v + scale) : 0.0;
-        if (s->p->blade[at] > 0.0f)
-            s->z[at] = (float)(arch_depth(s->p) * (double)s->p->arch[at] - sunk);
-    }
-}
-
-/* Slope between pixels a and b on either side of `at`, each left out where it is not of the blade; segments per pixel.
- */
-static double slope(const Surface *s, gsize a, gsize at, gsize b)
-{
-    bool has_a = s->p->blade[a] > 0.0f, has_b = s->p->blade[b] > 0.0f;
-    gsize lo = has_a ? a : at, hi = has_b ? b : at;
-    if (lo == hi)
-        return 0.0;
-    double rise = (double)s->z[hi] - (double)s->z[lo];
-    return lo != at && hi != at ? 0.5 * rise : rise;
+    bool has_a = ra->blade[xa] > 0.0f, has_b = rb->blade[xb] > 0.0f;
+    double a = has_a ? height_at(s, ra, xa) : here, b = has_b ? height_at(s, rb, xb) : here;
+    return has_a && has_b ? 0.5 * (b - a) : b - a;
 }
 
 static void normal_row(uint32_t y, void *user)
 {
     const Surface *s = user;
-    uint32_t w = s->p->width;
-    for (uint32_t x = 0; x < w; x++) {
-        gsize at = (gsize)y * w + x;
-        float *n = s->plane->px + at * 3;
+    const Painter *p = s->p;
+    uint32_t w = p->width;
+    Row up = row_at(p, y > 0 ? y - 1 : y), mid = row_at(p, y), down = row_at(p, y + 1 < p->rows ? y + 1 : y);
+    float *n = plane_row(p, s->plane, y);
+    for (uint32_t x = 0; x < w; x++, n += 3) {
         n[0] = n[1] = 0.5f;
         n[2] = 1.0f;
-        if (!(s->p->blade[at] > 0.0f))
+        if (!(mid.blade[x] > 0.0f))
             continue;
-        double dx = slope(s, x > 0 ? at - 1 : at, at, x + 1 < w ? at + 1 : at) * s->p->frame.scale;
-        double dy = slope(s, y + 1 < s->p->rows ? at + w : at, at, y > 0 ? at - w : at) * s->p->frame.scale;
+        double here = height_at(s, &mid, x);
+        double dx = slope(s, &mid, x > 0 ? x - 1 : x, &mid, x + 1 < w ? x + 1 : x, here) * p->frame.scale;
+        double dy = slope(s, &down, x, &up, x, here) * p->frame.scale;
         double k = 0.5 / sqrt(1.0 + dx * dx + dy * dy);
         n[0] = (float)(0.5 - dx * k);
         n[1] = (float)(0.5 - dy * k);
@@ -151,66 +154,36 @@ static void normal_row(uint32_t y, void *user)
     }
 }
 
-static void paint_normals(Painter *p, MapId id, Plane *plane)
+/* Veins that stand beside a place keep light from it, small ones more than their height would say: what counts is how they look,
+ * and that is lost when they are as faint as they are low. On top of them there is light. */
+static void occlusion_row(uint32_t y, void *user)
 {
-    Surface s = {.p = p, .plane = plane, .z = (float *)painter_height(p)};
-    if (id == MAP_ADAXIAL_NORMAL_GL) {
-        s.z = g_new0(float, (gsize)p->width * p->rows);
-        painter_rows(p, adaxial_row, &s);
-    }
-    painter_rows(p, normal_row, &s);
-    if (id == MAP_ADAXIAL_NORMAL_GL)
-        g_free(s.z);
-}
-
-/* Where the surroundings, averaged over some width, stand higher than the surface, little light comes in. */
-static void occlude_row(uint32_t y, void *user)
-{
+    static const double open = 0.75; /* height from which on the flank of a vein is not dark, of its top's */
     const Surface *s = user;
-    for (uint32_t x = 0; x < s->p->width; x++) {
-        gsize at = (gsize)y * s->p->width + x;
-        float *out = s->plane->px + at;
-        if (!(s->p->blade[at] > 0.0f))
-            continue;
-        double around = (double)s->sum[at] / MAX((double)s->weight[at], 1e-6),
-               deep = (around - (double)s->z[at]) / s->radius;
-        if (deep > 0.0)
-            *out = (float)((double)*out / (1.0 + s->strength * deep));
+    const Painter *p = s->p;
+    const float *blade = field_row(p, &p->blade, y), *bulge = field_row(p, &p->bulge, y), *crease = field_row(p, &p->crease, y);
+    float *out = plane_row(p, s->plane, y);
+    double strength = 0.9 * MIN(p->style.relief, 1.2), top = MAX(0.5 * p->style.relief * p->stout, 1e-9);
+    for (uint32_t x = 0; x < p->width; x++) {
+        double seen = (double)crease[x], deep = seen > 0.0 ? smoothstep(1.0 - (double)bulge[x] / (open * seen)) : 0.0;
+        out[x] = blade[x] > 0.0f && deep > 0.0 ? (float)(1.0 / (1.0 + strength * deep * sqrt(seen / top))) : 1.0f;
     }
-}
-
-/* At two widths: that of the net's meshes and that of the stout veins. */
-static void paint_occlusion(Painter *p, Plane *plane)
-{
-    gsize n = (gsize)p->width * p->rows;
-    Surface s = {.p = p, .plane = plane, .z = (float *)painter_height(p)};
-    for (gsize i = 0; i < n; i++)
-        plane->px[i] = 1.0f;
-    double radius[2] = {0.2 * p->spacing, 0.5 * p->stout};
-    s.sum = g_new(float, n);
-    s.weight = g_new(float, n);
-    for (int i = 0; i < 2; i++) {
-        s.radius = radius[i];
-        s.strength = i == 0 ? 2.0 : 3.0;
-        if (s.radius * p->frame.scale < 0.5)
-            continue;
-        blur_surface(&s, s.radius * p->frame.scale);
-        painter_rows(p, occlude_row, &s);
-    }
-    g_free(s.sum);
-    g_free(s.weight);
 }
 
 static void thickness_row(uint32_t y, void *user)
 {
+    static const double thinnest = 0.45; /* at the margin, of the blade's */
     const Surface *s = user;
-    double limit = s->p->band;
-    for (uint32_t x = 0; x < s->p->width; x++) {
-        gsize at = (gsize)y * s->p->width + x;
-        if (!(s->p->blade[at] > 0.0f))
-            continue;
-        double thin = 0.45 + 0.55 * smoothstep((double)s->p->inset[at] / limit);
-        s->plane->px[at] = (float)(s->p->style.thickness * thin + (double)s->p->vein_height[at]);
+    const Painter *p = s->p;
+    const float *blade = field_row(p, &p->blade, y), *bulge = field_row(p, &p->bulge, y), *inset = field_row(p, &p->inset, y);
+    float *out = plane_row(p, s->plane, y);
+    Vec2 at;
+    for (uint32_t x = 0; x < p->width; x++) {
+        double thin = thinnest + (1.0 - thinnest) * smoothstep((double)inset[x] / p->rim);
+        if (blade[x] > 0.0f)
+            out[x] = (float)(p->style.thickness * thin + (double)bulge[x]);
+        else if (painter_padded(p, x, y, &at))
+            out[x] = (float)(p->style.thickness * thinnest);
     }
 }
 
@@ -230,23 +203,26 @@ Plane *paint_surface(Painter *p, MapId id)
     Plane *plane = painter_plane(p, id);
     /* where veins merge they stand higher than either */
     double tallest = 0.65 * p->style.relief * MIN(p->widest, 2.0 * p->stout);
-    Surface s = {.p = p, .plane = plane};
-    if (id == MAP_HEIGHT) {
-        memcpy(plane->px, painter_height(p), (gsize)p->width * p->rows * sizeof(float));
+    Surface s = {.p = p, .plane = plane, .arch = -arch_depth(p), .bulge = 1.0};
+    painter_relief(p);
+    painter_inset(p);
+    if (id == MAP_AO) {
+        painter_rows(p, p->y0, p->y1, occlusion_row, &s);
+    } else if (id == MAP_THICKNESS) {
+        painter_rows(p, p->y0, p->y1, thickness_row, &s);
+        plane->high = MAX(painter_round_up(p->style.thickness + tallest), 1e-9);
+    } else if (id == MAP_HEIGHT) {
+        painter_arch(p);
+        painter_rows(p, p->y0, p->y1, height_row, &s);
         plane->low = -painter_round_up(arch_depth(p));
         plane->high = painter_round_up(tallest);
         if (plane->high <= plane->low)
             plane->high = 1.0;
-    } else if (id == MAP_AO) {
-        paint_occlusion(p, plane);
-    } else if (id == MAP_THICKNESS) {
-        painter_vein_height(p);
-        painter_inset(p);
-        painter_rows(p, thickness_row, &s);
-        plane->high = MAX(painter_round_up(p->style.thickness + tallest), 1e-9);
     } else {
-        paint_normals(p, id, plane);
+        painter_arch(p);
+        if (id == MAP_ADAXIAL_NORMAL_GL) /* arched between the veins, which sink in the more the larger they are */
+            s = (Surface){.p = p, .plane = plane, .arch = arch_depth(p), .groove = groove_depth(p)};
+        painter_rows(p, p->y0, p->y1, normal_row, &s);
     }
-    painter_pad(p, plane);
     return plane;
 }

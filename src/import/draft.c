@@ -253,8 +253,10 @@ Network *draft_finish(Draft *d, const WidthDef *widths, GError **error)
                    d->net->n_nodes == 0 ? "nodes" : "edges");
         return NULL;
     }
-    if (!resolve(d, error) || !check_lengths(d, error) || !check_doubles(d, error) || !draft_orient(d, error) ||
-        !draft_complete(d, widths, error))
+    if (!resolve(d, error) || !check_lengths(d, error) || !check_doubles(d, error))
+        return NULL;
+    draft_find_base(d);
+    if (!draft_orient(d, error) || !draft_complete(d, widths, error) || !draft_place(d, error))
         return NULL;
     return g_steal_pointer(&d->net);
 }

@@ -20,6 +20,7 @@ typedef struct {
     uint32_t *edge_line; /* [n_edges] */
     uint32_t given[FIELD_COUNT]; /* how many nodes, edges or graphs say it */
     bool undirected;     /* some edge has no direction */
+    Vec2 base, tip;      /* as the file says, else as they are found */
 } Draft;
 
 void draft_init(Draft *d, const char *file);
@@ -54,6 +55,12 @@ gboolean draft_fail_ring(const Draft *d, uint32_t edge, GArray *ring, GError **e
 
 /* The parts of draft_finish. By then edges join nodes. */
 
+/* place.c: where the leaf base is, before edges are turned away from it. */
+void draft_find_base(Draft *d);
+
+/* orient.c: do edges lead away from the base as they stand? Else the network is opened. */
+bool draft_as_given(const Draft *d);
+
 /* orient.c: kinds and directions of edges; sorts nodes and edges where a vein leads to an earlier node. */
 gboolean draft_orient(Draft *d, GError **error);
 
@@ -63,5 +70,8 @@ gboolean draft_search(Draft *d, uint32_t *entry, uint32_t *depth, GError **error
 
 /* complete.c: births, widths, orders, ranks, veins. */
 gboolean draft_complete(Draft *d, const WidthDef *widths, GError **error);
+
+/* place.c: finds the tip, moves the base to 0,0, turns the tip up; refuses veins outside the margin. */
+gboolean draft_place(Draft *d, GError **error);
 
 #endif

@@ -6,14 +6,12 @@
 #include "import/import.h"
 #include "import/names.h"
 
-/* Largest coordinate, segments: products of them stay exact enough, and finite. */
-#define LARGEST 1e9
 /* Largest width, segments, and one over the smallest: whatever width.exponent and width.minimum, flows stay finite and above 0. */
 #define WIDEST 1e24
 /* GraphML's int has 32 bits. */
 #define LARGEST_INT 2147483647.0
 
-typedef enum { REAL, WHOLE, KIND, POINTS } Type;
+typedef enum { REAL, WHOLE, KIND, POINT, POINTS } Type;
 
 static const struct {
     Domain domain;
@@ -22,8 +20,8 @@ static const struct {
     double least, most;
     const char *allowed;
 } fields[FIELD_COUNT] = {
-    [FIELD_X] = {DOMAIN_NODE, "x", REAL, -LARGEST, LARGEST, "a number from -1e9 to 1e9, in segments"},
-    [FIELD_Y] = {DOMAIN_NODE, "y", REAL, -LARGEST, LARGEST, "a number from -1e9 to 1e9, in segments"},
+    [FIELD_X] = {DOMAIN_NODE, "x", REAL, -FIELD_LARGEST, FIELD_LARGEST, "a number from -1e9 to 1e9, in segments"},
+    [FIELD_Y] = {DOMAIN_NODE, "y", REAL, -FIELD_LARGEST, FIELD_LARGEST, "a number from -1e9 to 1e9, in segments"},
     [FIELD_NODE_BIRTH] = {DOMAIN_NODE, "birth", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
     [FIELD_KIND] = {DOMAIN_EDGE, "kind", KIND, 0, 0, "vein or anastomosis"},
     [FIELD_ORDER] = {DOMAIN_EDGE, "order", WHOLE, 1, 255, "a whole number from 1 to 255"},
@@ -32,7 +30,9 @@ static const struct {
     [FIELD_WIDTH] = {DOMAIN_EDGE, "width", REAL, 1.0 / WIDEST, WIDEST, "a number above 0, from 1e-24 to 1e24, in segments"},
     [FIELD_FLOW] = {DOMAIN_EDGE, "flow", REAL, 1e-305, 1e305, "a number above 0"},
     [FIELD_BIRTH] = {DOMAIN_EDGE, "birth", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
-    [FIELD_MARGIN] = {DOMAIN_GRAPH, "margin", POINTS, -LARGEST, LARGEST, "points x,y x,y … of numbers from -1e9 to 1e9, in segments"},
+    [FIELD_MARGIN] = {DOMAIN_GRAPH, "margin", POINTS, -FIELD_LARGEST, FIELD_LARGEST, "points x,y x,y … of numbers from -1e9 to 1e9, in segments"},
+    [FIELD_BASE] = {DOMAIN_GRAPH, "base", POINT, -FIELD_LARGEST, FIELD_LARGEST, "a point x,y of numbers from -1e9 to 1e9, in segments"},
+    [FIELD_TIP] = {DOMAIN_GRAPH, "tip", POINT, -FIELD_LARGEST, FIELD_LARGEST, "a point x,y of numbers from -1e9 to 1e9, in segments"},
     [FIELD_STEPS] = {DOMAIN_GRAPH, "steps", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
 };
 
@@ -97,20 +97,29 @@ static bool parse(FieldId field, const char *at, const char *end, double *out)
            (fields[field].type != WHOLE || *out == floor(*out));
 }
 
-gboolean field_value(FieldId field, const char *text, gsize length, double *out, GError **error)
+/* Without blanks on either side. */
+static void strip(const char **at, const char **end)
 {
-    const char *at = text, *end = text + length;
-    while (at < end && g_ascii_isspace(*at))
-        at++;
-    while (end > at && g_ascii_isspace(end[-1]))
-        end--;
-    if (parse(field, at, end, out))
-        return TRUE;
+    while (*at < *end && g_ascii_isspace(**at))
+        (*at)++;
+    while (*end > *at && g_ascii_isspace((*end)[-1]))
+        (*end)--;
+}
+
+static gboolean fail_value(FieldId field, const char *at, const char *end, GError **error)
+{
     char *bare = g_strndup(at, (gsize)(end - at)), *found = names_quote(bare);
     g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_SYNTAX, "%s is %s; it must be %s", fields[field].name, found, fields[field].allowed);
     g_free(found);
     g_free(bare);
     return FALSE;
+}
+
+gboolean field_value(FieldId field, const char *text, gsize length, double *out, GError **error)
+{
+    const char *at = text, *end = text + length;
+    strip(&at, &end);
+    return parse(field, at, end, out) || fail_value(field, at, end, error);
 }
 
 static bool parse_point(const char *at, const char *end, Vec2 *out)
@@ -119,10 +128,17 @@ static bool parse_point(const char *at, const char *end, Vec2 *out)
     return comma != NULL && parse(FIELD_MARGIN, at, comma, &out->x) && parse(FIELD_MARGIN, comma + 1, end, &out->y);
 }
 
+gboolean field_point(FieldId field, const char *text, gsize length, Vec2 *out, GError **error)
+{
+    const char *at = text, *end = text + length;
+    strip(&at, &end);
+    return parse_point(at, end, out) || fail_value(field, at, end, error);
+}
+
 /* Would they be written as one point? (export.h: in millionths of a segment) */
 static bool same(Vec2 a, Vec2 b) { return rint(a.x * 1e6) == rint(b.x * 1e6) && rint(a.y * 1e6) == rint(b.y * 1e6); }
 
-/* All points of the text but repeated ones; NULL with an error for one that is none. */
+/* All points of the text; NULL with an error for one that is none. */
 static GArray *parse_points(const char *text, gsize length, GError **error)
 {
     GArray *points = g_array_new(FALSE, FALSE, sizeof(Vec2));
@@ -141,22 +157,30 @@ static GArray *parse_points(const char *text, gsize length, GError **error)
             g_array_unref(points);
             return NULL;
         }
-        if (stop > at && (points->len == 0 || !same(p, g_array_index(points, Vec2, points->len - 1))))
+        if (stop > at)
             g_array_append_val(points, p);
         at = stop + 1;
     }
-    while (points->len > 1 && same(g_array_index(points, Vec2, 0), g_array_index(points, Vec2, points->len - 1)))
-        g_array_set_size(points, points->len - 1);
     return points;
 }
 
-Polygon *field_margin(const char *text, gsize length, GError **error)
+static void leave_out_repeated(GArray *points)
 {
-    GArray *points = parse_points(text, length, error);
-    if (points == NULL)
-        return NULL;
+    Vec2 *p = (Vec2 *)(gpointer)points->data;
+    guint n = 0;
+    for (guint i = 0; i < points->len; i++)
+        if (n == 0 || !same(p[i], p[n - 1]))
+            p[n++] = p[i];
+    while (n > 1 && same(p[0], p[n - 1]))
+        n--;
+    g_array_set_size(points, n);
+}
+
+Polygon *field_outline(GArray *points, GError **error)
+{
     Polygon *margin = NULL;
     uint32_t i, j;
+    leave_out_repeated(points);
     if (points->len < 3)
         g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH, "margin has %u different point%s; an outline needs at least 3", points->len,
                     points->len == 1 ? "" : "s");
@@ -171,4 +195,10 @@ Polygon *field_margin(const char *text, gsize length, GError **error)
                 a.y, b.x, b.y, c.x, c.y, d.x, d.y);
     polygon_free(margin);
     return NULL;
+}
+
+Polygon *field_margin(const char *text, gsize length, GError **error)
+{
+    GArray *points = parse_points(text, length, error);
+    return points != NULL ? field_outline(points, error) : NULL;
 }

@@ -20,9 +20,14 @@ typedef enum {
     FIELD_FLOW,
     FIELD_BIRTH,
     FIELD_MARGIN,
+    FIELD_BASE,
+    FIELD_TIP,
     FIELD_STEPS,
     FIELD_COUNT,
 } FieldId;
+
+/* Largest coordinate, segments: products of them stay exact enough, and finite. */
+#define FIELD_LARGEST 1e9
 
 #define FIELD_BIT(field) (1u << (field))
 
@@ -32,11 +37,17 @@ const char *field_name(FieldId field);
 /* The field of that name, FIELD_COUNT if there is none. */
 FieldId field_find(Domain domain, const char *name);
 
-/* The value of any field but the margin; a kind is its EdgeKind. Whole numbers may be written as 3.0, as programs do that know but one
+/* The value of any field but margin, base and tip; a kind is its EdgeKind. Whole numbers may be written as 3.0, as programs do that know but one
  * kind of number. On failure the error (in IMPORT_ERROR, as all of src/import) says what was found and what may be. */
 gboolean field_value(FieldId field, const char *text, gsize length, double *out, GError **error);
 
+/* Base or tip: x,y. */
+gboolean field_point(FieldId field, const char *text, gsize length, Vec2 *out, GError **error);
+
 /* The margin: points that repeat the one before, to a millionth of a segment, are left out, and last ones that repeat the first. */
 Polygon *field_margin(const char *text, gsize length, GError **error);
+
+/* The same of points (Vec2), which it frees. */
+Polygon *field_outline(GArray *points, GError **error);
 
 #endif

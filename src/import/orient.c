@@ -144,13 +144,14 @@ static void sort_network(Draft *d, const uint32_t *entry, const uint32_t *depth)
     g_free(edges);
 }
 
+bool draft_as_given(const Draft *d) { return !d->undirected && d->given[FIELD_KIND] == d->net->n_edges; }
+
 gboolean draft_orient(Draft *d, GError **error)
 {
     Network *net = d->net;
     uint32_t *entry = g_new(uint32_t, net->n_nodes), *depth = g_new(uint32_t, net->n_nodes);
-    bool as_given = !d->undirected && d->given[FIELD_KIND] == net->n_edges;
     gboolean good;
-    if (as_given)
+    if (draft_as_given(d))
         good = find_entries(d, entry, error) && (in_order(net) || measure_depths(d, entry, depth, error));
     else
         good = draft_search(d, entry, depth, error);

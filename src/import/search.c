@@ -95,12 +95,13 @@ static uint32_t nearest_to_base(Search *s, uint32_t v)
 {
     const Network *net = s->draft->net;
     uint32_t n = 0, best = v;
-    double best2 = vec_norm2(net->node[v]);
+    Vec2 base = s->draft->base;
+    double best2 = vec_dist2(net->node[v], base);
     s->part[n++] = v;
     s->seen[v] = true;
     for (uint32_t k = 0; k < n; k++) {
         uint32_t u = s->part[k];
-        double d2 = vec_norm2(net->node[u]);
+        double d2 = vec_dist2(net->node[u], base);
         if (d2 < best2 || (d2 == best2 && u < best)) {
             best2 = d2;
             best = u;

@@ -2,6 +2,7 @@
 
 #include "import/drawing_file.h"
 #include "lib/settings.h"
+#include "scan/fill.h"
 #include "scan/found.h"
 
 /* ---- coordinates ---- */
@@ -194,22 +195,25 @@ static gboolean read_drawing(Ground *g, const Params *p, GError **error)
     return TRUE;
 }
 
+/* The outline as it lies in a scan, y-up pixels. */
+static Polygon *outline_in(const Ground *g, const Scan *scan, const Affine *to_scan)
+{
+    Vec2 *v = g_new(Vec2, g->outline->n);
+    for (uint32_t i = 0; i < g->outline->n; i++) {
+        Vec2 q = affine_apply(to_scan, g->outline->v[i]);
+        v[i] = vec2(q.x, scan->height - q.y);
+    }
+    Polygon *p = polygon_new(v, g->outline->n);
+    g_free(v);
+    return p;
+}
+
 static gboolean find_veins(Ground *g, const Params *p, GError **error)
 {
     FoundDef def = settings_found(p);
-    Polygon *outline = g->profile ? g->profile->outline : g->fang ? g->fang->outline : NULL, *made = NULL;
-    if (!outline) { /* from a drawing over the scan */
-        Affine m = to_pixels(g->base, g->tip, g->scan->height);
-        Vec2 *v = g_new(Vec2, g->outline->n);
-        for (uint32_t i = 0; i < g->outline->n; i++) {
-            Vec2 q = affine_apply(&m, g->outline->v[i]);
-            v[i] = vec2(q.x, g->scan->height - q.y);
-        }
-        outline = made = polygon_new(v, g->outline->n);
-        g_free(v);
-    }
+    Polygon *outline = outline_in(g, g->scan, &g->to_scan);
     g->drawing = found_veins(g->scan, outline, g->base, g->tip, &def, error);
-    polygon_free(made);
+    polygon_free(outline);
     if (!g->drawing)
         return blame(p, PARAM_SCAN_FILE, error);
     g->found = true;
@@ -247,7 +251,22 @@ static gboolean find_outline(Ground *g, const Params *p, GError **error)
     return g->outline != NULL;
 }
 
-static gboolean fill(Ground *g, const Params *p, bool veins, GError **error)
+/* The scans are looked at no more: from here on they are textures. */
+static void make_textures(Ground *g, const Params *p)
+{
+    const double inset = 3.0; /* pixels: what scanners blur */
+    enum { AROUND = 64 };
+    if (!g->scan || !params_switch(p, PARAM_SCAN_TEXTURE))
+        return;
+    Polygon *front = outline_in(g, g->scan, &g->to_scan), *back = g->back ? outline_in(g, g->back, &g->to_back) : NULL;
+    scan_fill(g->scan, front, g->profile ? &g->threshold : NULL, inset, AROUND);
+    if (back)
+        scan_fill(g->back, back, NULL, inset, AROUND);
+    polygon_free(front);
+    polygon_free(back);
+}
+
+static gboolean find(Ground *g, const Params *p, bool veins, GError **error)
 {
     if (!read_scan(p, PARAM_SCAN_FILE, &g->scan, error) || !find_outline(g, p, error))
         return FALSE;
@@ -278,8 +297,10 @@ static void clear(gpointer data)
 Ground *ground_new(const Params *p, bool veins, GError **error)
 {
     Ground *g = g_atomic_rc_box_new0(Ground);
-    if (fill(g, p, veins, error))
+    if (find(g, p, veins, error)) {
+        make_textures(g, p);
         return g;
+    }
     ground_unref(g);
     return NULL;
 }

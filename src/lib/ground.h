@@ -14,7 +14,7 @@ typedef struct {
     Drawing *drawing;  /* leaf coordinates; NULL: no veins are drawn or found */
     bool found;        /* they were found in the scan */
     /* of a scan, else NULL */
-    Scan *scan, *back;
+    Scan *scan, *back;       /* with scan.texture the leaf's colours go on beyond its border and over its holes (scan/fill.h) */
     Affine to_scan, to_back; /* leaf coordinates to columns and rows, the image's upper left corner at 0,0 */
     Profile *profile;        /* by threshold; NULL when [outline] gave the margin */
     Threshold threshold;

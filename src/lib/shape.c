@@ -75,6 +75,17 @@ void bent_clear(Bent *b)
     *b = (Bent){0};
 }
 
+/* The petiole of a real leaf is as long and as wide as the scan shows it. */
+static void real_petiole(const VenLeaf *leaf, SolidDef *def)
+{
+    const Profile *f = leaf->ground ? leaf->ground->profile : NULL;
+    if (!f || !f->has_stalk || params_is_given(leaf->params, PARAM_MESH_PETIOLE_LENGTH))
+        return;
+    double segments = leaf->length / vec_dist(leaf->ground->base, leaf->ground->tip); /* a pixel */
+    def->petiole_length = f->stalk_length * segments;
+    def->petiole_radius = 0.5 * f->stalk_width * segments;
+}
+
 /* ---- levels of detail ---- */
 
 /* A level has about a quarter of the triangles of the one before, at least half of them must go, and the leaf must stay a leaf. */
@@ -168,6 +179,7 @@ Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent)
         quarter *= wanted_part;
     if (bent->veins) {
         SolidDef def = settings_solids(s->leaf->params, s->leaf->length, sqrt(1.0 / quarter));
+        real_petiole(s->leaf, &def);
         b.tubes = solid_tubes(b.pose, normal, &def, &b.n_tubes);
         thin_veins(&b, &def, quarter * count_triangles(bent) - b.blade->n_triangles);
         dress_veins(s, &b, &def);
@@ -379,13 +391,23 @@ gboolean ven_shape_pose(VenShape *shape, const VenParams *params, uint64_t seed,
     return bend_as_asked(shape, params->values, seed, error);
 }
 
+/* Length of the model: as given, else that of the real leaf where a scan says it. */
+static double leaf_metres(const VenLeaf *leaf)
+{
+    const Ground *g = leaf->ground;
+    if (!g || !g->scan || !(g->scan->mm_per_pixel > 0.0) || params_is_given(leaf->params, PARAM_EXPORT_LEAF_LENGTH))
+        return params_number(leaf->params, PARAM_EXPORT_LEAF_LENGTH);
+    return 1e-3 * g->scan->mm_per_pixel * sqrt(g->to_scan.c * g->to_scan.c + g->to_scan.d * g->to_scan.d);
+}
+
 VenShape *ven_shape(const VenLeaf *leaf, GError **error)
 {
     const Params *p = leaf->params;
     VenShape *s = g_new0(VenShape, 1);
     s->leaf = leaf;
     s->solid = settings_solids(p, leaf->length, 1.0);
-    s->unit = params_number(p, PARAM_EXPORT_LEAF_LENGTH) / leaf->length;
+    real_petiole(leaf, &s->solid);
+    s->unit = leaf_metres(leaf) / leaf->length;
     s->frame = leaf_frame(leaf, leaf->net->margin->box);
     if (build(s, error) && bend_as_asked(s, p, leaf->seed, error))
         return s;

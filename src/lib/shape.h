@@ -51,13 +51,6 @@ void bent_clear(Bent *b);
  * the thinnest first. Its `pose` knows places alone. */
 Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent);
 
-/* Levels of detail there are, the full leaf included: at most mesh.levels. */
-uint32_t ven_shape_levels(const VenShape *s);
-
-/* Part of the blade's harmonic weights that did not fit into the joints a vertex may have, at worst and in the mean, and the number of joints;
- * FALSE: the leaf has no rig. */
-gboolean ven_shape_rig(const VenShape *s, uint32_t *joints, double *worst_loss, double *mean_loss);
-
 /* uv of a point of the flat blade, v up. */
 Vec2 shape_uv(const VenShape *s, Vec2 rest);
 

@@ -64,7 +64,7 @@ static VenLeaf *leaf_new(const Params *params, Ground *ground, const SimulationD
     if (def->given)
         network_keep_drawn(leaf->net, &widths, def->given, simulation_given(sim));
     leaf->counts = simulation_counts(sim);
-    leaf->length = blade->length;
+    leaf->length = leaf->net->length = blade->length;
     leaf->growth_steps = blade->last_step;
     leaf->stage = blade->widest;
     return leaf;
@@ -158,7 +158,7 @@ static VenLeaf *leaf_of(const Params *p, Ground *ground, uint64_t seed, unsigned
     leaf->counts = (SimulationCounts){.step = net->n_steps, .nodes = net->n_nodes, .end = end};
     for (uint32_t e = 0; e < net->n_edges; e++)
         leaf->counts.joins += net->kind[e] == EDGE_ANASTOMOSIS;
-    leaf->length = length;
+    leaf->length = leaf->net->length = length;
     leaf->stage = net->margin->box;
     return leaf;
 }
@@ -241,21 +241,23 @@ VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *opti
 
 /* ---- a network that is there already ---- */
 
-/* The margin of a network that doesn't say it: the outline of the parameters at the final length. */
-static Polygon *given_margin(const Params *p, const char *path, GError **error)
+/* A network that doesn't say its margin gets the outline of the parameters, at its own length if it says that, else at the final one. */
+static gboolean give_margin(Network *net, const Params *p, const char *path, GError **error)
 {
     if (!params_is_given(p, PARAM_OUTLINE_PATH) && !params_is_given(p, PARAM_OUTLINE_FILE)) {
         g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
                     "%s: the graph has no attribute 'margin' (x,y x,y … in segments), nor do parameters give an [outline]", path);
-        return NULL;
+        return FALSE;
     }
     Vec2 base, tip;
     Polygon *leaf = settings_outline(p, &base, &tip, error);
     if (!leaf)
-        return NULL;
-    Polygon *margin = polygon_scaled(leaf, params_number(p, PARAM_GROWTH_FINAL_LENGTH));
+        return FALSE;
+    if (net->length == 0.0)
+        net->length = params_number(p, PARAM_GROWTH_FINAL_LENGTH);
+    net->margin = polygon_scaled(leaf, net->length);
     polygon_free(leaf);
-    return margin;
+    return import_check_inside(net, path, error);
 }
 
 VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed, GError **error)
@@ -263,9 +265,7 @@ VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed,
     const Params *p = params->values;
     WidthDef widths = settings_widths(p);
     Network *net = import_graphml(path, &widths, error);
-    if (net && !net->margin)
-        net->margin = given_margin(p, path, error);
-    if (!net || !net->margin) {
+    if (!net || (!net->margin && !give_margin(net, p, path, error))) {
         network_free(net);
         return NULL;
     }
@@ -274,8 +274,7 @@ VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed,
         network_free(net);
         return NULL;
     }
-    /* the base is at the origin, the tip along +y */
-    VenLeaf *leaf = leaf_of(p, ground, seed, 0, net, net->margin->box.y1, END_LOADED);
+    VenLeaf *leaf = leaf_of(p, ground, seed, 0, net, net->length, END_LOADED);
     ground_unref(ground);
     return leaf;
 }

@@ -11,25 +11,130 @@ static gboolean measures(MapId id)
     return id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
 }
 
+/* Maps are painted and written band by band, each band's files side by side. */
+enum { MAX_FILES = 2 * MAP_COUNT + 1, BAND_PIXELS = 1 << 19, BAND_STEP = 32 };
+
+/* A map, or the plain picture of the veins, that is painted. */
+typedef struct {
+    int id; /* MapId; MAP_COUNT is the picture */
+    const char *name;
+    Plane *plane; /* the band at hand */
+} Page;
+
+typedef struct {
+    const Page *page;
+    ImageFile *file; /* NULL: not open */
+    gboolean exr;
+    GError *error;
+} Sheet;
+
+typedef struct {
+    const Writer *writer;
+    Painter *painter;
+    Pool *pool;
+    uint32_t height; /* of the image, pixels */
+    Page page[MAP_COUNT + 1];
+    Sheet sheet[MAX_FILES];
+    uint32_t n_pages, n_sheets;
+} Atlas;
+
+static void add_sheet(Atlas *a, const Page *page, gboolean exr)
+{
+    a->sheet[a->n_sheets++] = (Sheet){.page = page, .exr = exr};
+}
+
+/* Files that take longest come first, so that none is left when all others are done. */
+static void lay_out(Atlas *a, const gboolean *wanted, gboolean veins_image)
+{
+    for (int i = 0; i < MAP_COUNT; i++)
+        if (wanted[i])
+            a->page[a->n_pages++] = (Page){i, paint_map_info((MapId)i)->name, NULL};
+    if (veins_image)
+        a->page[a->n_pages++] = (Page){MAP_COUNT, "veins", NULL};
+    for (int weight = 3; weight > 0; weight--)
+        for (uint32_t i = 0; i < a->n_pages; i++) {
+            const Page *p = &a->page[i];
+            int channels = p->id < MAP_COUNT ? (int)paint_map_info((MapId)p->id)->channels : 1;
+            if (a->writer->exr && p->id < MAP_COUNT && (channels > 1 ? 3 : 2) == weight)
+                add_sheet(a, p, TRUE);
+            if ((channels > 1 ? 2 : 1) == weight)
+                add_sheet(a, p, FALSE);
+        }
+}
+
+static gboolean open_sheet(const Atlas *a, Sheet *s)
+{
+    const Writer *w = a->writer;
+    int id = s->page->id, depth = id == MAP_COUNT ? 8 : measures((MapId)id) ? 16 : w->depth;
+    char *suffix = g_strdup_printf("_%s.%s", s->page->name, s->exr ? "exr" : "png"), *path = writer_path(w, suffix);
+    s->file = s->exr ? image_exr_begin(path, s->page->plane, a->height, w->exr == 1, &w->meta, NULL, &s->error)
+                     : image_png_begin(path, s->page->plane, a->height, depth, &w->meta, &s->error);
+    g_free(path);
+    g_free(suffix);
+    return s->file != NULL;
+}
+
+static void fill_sheets(uint32_t first, uint32_t last, void *user)
+{
+    Atlas *a = user;
+    for (uint32_t i = first; i < last; i++) {
+        Sheet *s = &a->sheet[i];
+        if (s->file != NULL || open_sheet(a, s))
+            image_file_rows(s->file, s->page->plane, &s->error);
+    }
+}
+
+/* TRUE unless a sheet failed, whose error is passed on. */
+static gboolean sheets_fine(Atlas *a, GError **error)
+{
+    for (uint32_t i = 0; i < a->n_sheets; i++)
+        if (a->sheet[i].error != NULL) {
+            g_propagate_error(error, g_steal_pointer(&a->sheet[i].error));
+            return FALSE;
+        }
+    return TRUE;
+}
+
+static gboolean write_band(Atlas *a, uint32_t y0, uint32_t y1, GError **error)
+{
+    painter_band(a->painter, y0, y1);
+    for (uint32_t i = 0; i < a->n_pages; i++)
+        a->page[i].plane = a->page[i].id < MAP_COUNT ? painter_paint(a->painter, (MapId)a->page[i].id) : painter_veins(a->painter);
+    pool_for(a->pool, a->n_sheets, 1, fill_sheets, a);
+    for (uint32_t i = 0; i < a->n_pages; i++)
+        plane_free(a->page[i].plane);
+    return sheets_fine(a, error);
+}
+
+static gboolean finish(Atlas *a, gboolean ok, GError **error)
+{
+    for (uint32_t i = 0; i < a->n_sheets; i++) {
+        Sheet *s = &a->sheet[i];
+        if (ok)
+            ok = image_file_end(s->file, error);
+        else
+            image_file_abort(s->file);
+        g_clear_error(&s->error);
+    }
+    return ok;
+}
+
 static gboolean write_maps(const Writer *w, const Frame *frame, const gboolean *wanted, gboolean veins_image, GError **error)
 {
-    Painter *painter = writer_painter(w, frame);
+    Atlas *a = g_new0(Atlas, 1);
+    a->writer = w;
+    a->painter = writer_painter(w, frame);
+    a->pool = pool_new(w->leaf->threads);
+    a->height = frame->height;
+    lay_out(a, wanted, veins_image);
+    uint32_t rows = MAX(BAND_PIXELS / frame->width / BAND_STEP * BAND_STEP, (uint32_t)BAND_STEP);
     gboolean ok = TRUE;
-    for (int i = 0; ok && i < MAP_COUNT; i++) {
-        if (!wanted[i])
-            continue;
-        Plane *plane = painter_paint(painter, (MapId)i);
-        ok = writer_map(w, plane, paint_map_info((MapId)i)->name, measures((MapId)i) ? 16 : w->depth, error);
-        plane_free(plane);
-    }
-    if (ok && veins_image) {
-        Plane *plane = painter_veins(painter);
-        char *path = writer_path(w, "_veins.png");
-        ok = image_write_png(plane, path, 8, &w->meta, error);
-        g_free(path);
-        plane_free(plane);
-    }
-    painter_free(painter);
+    for (uint32_t y = 0; ok && y < frame->height; y += rows)
+        ok = write_band(a, y, MIN(y + rows, frame->height), error);
+    ok = finish(a, ok, error);
+    painter_free(a->painter);
+    pool_free(a->pool);
+    g_free(a);
     return ok;
 }
 

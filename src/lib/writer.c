@@ -6,6 +6,27 @@
 #include "geom/parallel.h"
 #include "lib/settings.h"
 
+/* Where there is no scan of the shadow side, it is the sunny side's in the shadow side's shade. */
+static void shadow_tint(const Params *p, float tint[3])
+{
+    PaintStyle style = settings_style(p, 0, 1);
+    for (int i = 0; i < 3; i++)
+        tint[i] = (float)CLAMP(sqrt((double)style.abaxial_lamina[i] / MAX((double)style.lamina[i], 1e-3)), 0.8, 1.5);
+}
+
+static void lay_photos(Writer *w)
+{
+    const Ground *g = w->leaf->ground;
+    if (!g || !g->scan || !params_switch(w->leaf->params, PARAM_SCAN_TEXTURE))
+        return;
+    double by = 1.0 / w->leaf->length;
+    Affine to_leaf = {.a = by, .d = by}, front = affine_multiply(&g->to_scan, &to_leaf), back = affine_multiply(&g->to_back, &to_leaf);
+    float plain[3] = {1.0f, 1.0f, 1.0f}, shade[3];
+    shadow_tint(w->leaf->params, shade);
+    w->photo[0] = photo_new(g->scan, &front, plain);
+    w->photo[1] = g->back ? photo_new(g->back, &back, plain) : photo_new(g->scan, &front, shade);
+}
+
 void writer_init(Writer *w, const VenLeaf *leaf, const char *dir, const char *name)
 {
     static const char *const key[WRITER_META] = {"Software", "Title", "Source", "Seed", "Parameters"};
@@ -18,12 +39,15 @@ void writer_init(Writer *w, const VenLeaf *leaf, const char *dir, const char *na
     w->meta = (Metadata){WRITER_META, key, (const char *const *)w->value};
     w->depth = params_choice(leaf->params, PARAM_TEXTURE_DEPTH) ? 16 : 8;
     w->exr = params_choice(leaf->params, PARAM_TEXTURE_EXR);
+    lay_photos(w);
 }
 
 void writer_clear(Writer *w)
 {
     for (int i = 0; i < WRITER_META; i++)
         g_free(w->value[i]);
+    for (int i = 0; i < 2; i++)
+        photo_free(w->photo[i]);
 }
 
 gboolean writer_make_dir(const Writer *w, GError **error)
@@ -83,5 +107,7 @@ Painter *writer_painter(const Writer *w, const Frame *frame)
 {
     PaintStyle style = settings_style(w->leaf->params, w->leaf->seed, w->leaf->threads);
     style.reference = w->leaf->reference;
+    for (int i = 0; i < 2; i++)
+        style.photo[i] = w->photo[i];
     return painter_new(w->leaf->net, frame, &style);
 }

@@ -4,6 +4,7 @@
 
 #include "image/file.h"
 #include "image/paint.h"
+#include "image/photo.h"
 #include "lib/leaf.h"
 
 enum { WRITER_META = 5 };
@@ -15,6 +16,7 @@ typedef struct {
     Metadata meta;
     int depth; /* bits a channel of PNG */
     int exr;   /* 0 none, 1 half, 2 float */
+    Photo *photo[2]; /* the scan as colours of the sunny and the shadow side, or NULL */
 } Writer;
 
 void writer_init(Writer *w, const VenLeaf *leaf, const char *dir, const char *name);

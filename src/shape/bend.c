@@ -89,7 +89,7 @@ static void measure(Layout *l, const Skeleton *s)
     }
     if (s->outline)
         box = s->outline->box;
-    l->leaf_length = box_is_empty(box) ? 0.0 : box.y1 - box.y0;
+    l->leaf_length = s->length > 0.0 ? s->length : box_is_empty(box) ? 0.0 : box.y1 - box.y0;
 }
 
 Layout *layout_new(const Skeleton *s)

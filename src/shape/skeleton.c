@@ -168,6 +168,7 @@ Skeleton *skeleton_new(const Network *net, const SkeletonDef *def, GError **erro
     Skeleton *s = NULL;
     if (c && c->cleared->len > 0) {
         s = skeleton_copy_cleared(c, trails);
+        s->length = net->length;
         skeleton_name(s);
     } else if (c) {
         g_set_error(error, SKELETON_ERROR, SKELETON_ERROR_EMPTY,

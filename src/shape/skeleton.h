@@ -43,6 +43,7 @@ typedef struct {
     uint32_t *at;     /* [n_at] nodes of the sequences, one sequence after the other */
     Sequence *sequence; /* [n_sequences] parents before children */
     Polygon *outline; /* the blade, simplified, vein ends on it inserted; owned */
+    double length;    /* of the leaf, base to tip, segments; 0: unknown */
     double least;     /* skeleton_pslg passes pslg_check with this, segments; 0 (not known) after skeleton_refine */
 } Skeleton;
 

@@ -148,6 +148,7 @@ static Skeleton *finish(const Adding *a, const Skeleton *from)
     memcpy(s->sequence, a->sequence->data, s->n_sequences * sizeof *s->sequence);
     memcpy(s->radius, from->radius, from->n_nodes * sizeof *s->radius);
     s->outline = polygon_new(from->outline->v, from->outline->n);
+    s->length = from->length;
     s->least = from->least;
     skeleton_name(s);
     return s;

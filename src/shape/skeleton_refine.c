@@ -111,6 +111,7 @@ Skeleton *skeleton_refine(const Skeleton *s, const Mesh *mesh)
         }
     add_sequences(&r);
     r.to->outline = boundary_polygon(mesh);
+    r.to->length = s->length;
     pslg_free(g);
     g_free(r.point);
     g_free(r.segment);

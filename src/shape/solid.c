@@ -9,7 +9,8 @@ enum { FLARE_BALLS = 4, PETIOLE_LEAST = 3, PETIOLE_MOST = 24, LEAST_SIDES = 3 };
 static const double flare = 0.6;         /* a branch widens by this part of its radius towards its parent … */
 static const double flare_reach = 3.0;   /* … from this many radii outside the parent's tube */
 static const double within = 0.92;       /* of the parent's radius: the widest a branch may be where it begins */
-static const double petiole_widening = 0.3, petiole_widest = 1.6, petiole_gather = 0.08;
+static const double petiole_widening = 0.3, petiole_widest = 2.2, petiole_gather = 0.08;
+static const double petiole_primaries = 0.08; /* of the leaf length: as far from the base primaries may begin */
 static const double petiole_aim = 0.1;    /* it takes the direction of this part of the midrib, whose first edge may lie askew … */
 static const double petiole_swing = 0.25; /* … within this part of its length */
 static const double lateral = 0.3, thickness = 0.06; /* a ball may be left out when the vein is off by no more than this, in its radii */
@@ -213,14 +214,19 @@ static double smooth(double t)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/* Where primaries come together the petiole has room for all of them: equal cross-sections (Murray's law with exponent 2). */
+/* Where primaries come together the petiole has room for all of them: equal cross-sections (Murray's law with exponent 2). They begin where the
+ * midrib does, or leave it near there. */
 static double gathered_radius(const Skeleton *s, const SolidDef *def, uint32_t midrib)
 {
     uint32_t root = s->at[s->sequence[midrib].first];
-    double sum = 0.0, r = node_radius(s, &s->sequence[midrib], 0, def);
+    double sum = 0.0, r = node_radius(s, &s->sequence[midrib], 0, def), near = petiole_primaries * s->length;
+    if (def->petiole_radius > 0.0)
+        return MAX(def->petiole_radius, r);
     for (uint32_t q = 0; q < s->n_sequences; q++) {
         const Sequence *seq = &s->sequence[q];
-        if (seq->parent != NO_PARENT || s->at[seq->first] != root || seq->fictitious)
+        uint32_t first = s->at[seq->first];
+        bool primary = seq->order == s->sequence[midrib].order && vec_dist2(s->rest[first], s->rest[root]) <= near * near;
+        if (seq->fictitious || (first != root && !primary))
             continue;
         double one = node_radius(s, seq, 0, def);
         sum += one * one;

@@ -38,6 +38,7 @@ typedef struct {
     double offset;          /* towards the abaxial side, in radii; 1: the vein touches the blade from below */
     double least_radius;    /* thinner veins are drawn this thick, segments */
     double petiole_length;  /* segments; 0: none */
+    double petiole_radius;  /* where it meets the blade, segments; 0: by the primaries that come together there */
     double petiole_bend;    /* degrees over its length, away from the sunny side */
     uint32_t sides;         /* of the thickest cross-section, 3 … 64; thinner veins have fewer, down to 3 */
     double spacing;         /* farthest that two balls stand apart, segments; 0: any */

@@ -27,6 +27,7 @@ struct Network {
     uint8_t *rank;        /* [n_edges] 1, 2, … by width at the vein's origin (Hickey 1979) */
     uint32_t *vein;       /* [n_edges] the vein (run of edges of one order) it belongs to, 0 … n_veins-1 */
     Polygon *margin;      /* outline at the end of the run, segments; owned */
+    double length;        /* base (0,0) to tip (0,length), segments; 0: unknown */
 };
 
 Network *network_new(uint32_t n_nodes, uint32_t n_edges);

@@ -460,23 +460,29 @@ static void test_graphml(void)
     network_free(net);
 }
 
-/* The head of the file, with a margin and without. */
+/* The head of the file, with a margin and without, with a length and without. */
 static void test_graphml_graph(void)
 {
     Network *net = small_leaf(2);
     char *path = in_folder("g.graphml"), *text;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
+        net->length = i == 0 ? 3.0000004 : 0.0;
         g_assert_true(export_graphml(net, path, NULL));
         text = slurp(path, NULL);
         const char *graph = strstr(text, "<graph ");
-        static const char *const head[] = {"<graph id=\"venation\" edgedefault=\"directed\">\n"
-                                           "<data key=\"m\">0,0 1,0.666667 0.4,3 -1,0.666667</data>\n<data key=\"s\">2</data>\n<node id=\"0\">",
-                                           "<graph id=\"venation\" edgedefault=\"directed\">\n<data key=\"s\">2</data>\n<node id=\"0\">"};
+#define HEAD "<graph id=\"venation\" edgedefault=\"directed\">\n"
+#define MARGIN "<data key=\"m\">0,0 1,0.666667 0.4,3 -1,0.666667</data>\n"
+#define REST "<data key=\"s\">2</data>\n<node id=\"0\">"
+        static const char *const head[] = {HEAD MARGIN "<data key=\"base\">0,0</data>\n<data key=\"tip\">0,3</data>\n" REST,
+                                           HEAD MARGIN REST, HEAD REST};
         g_assert_true(g_str_has_prefix(graph, head[i]));
         g_assert_nonnull(strstr(text, "<key id=\"m\" for=\"graph\" attr.name=\"margin\" attr.type=\"string\"/>\n"
+                                      "<key id=\"base\" for=\"graph\" attr.name=\"base\" attr.type=\"string\"/>\n"
+                                      "<key id=\"tip\" for=\"graph\" attr.name=\"tip\" attr.type=\"string\"/>\n"
                                       "<key id=\"s\" for=\"graph\" attr.name=\"steps\" attr.type=\"int\"/>\n"));
         g_free(text);
-        g_clear_pointer(&net->margin, polygon_free);
+        if (i == 1)
+            g_clear_pointer(&net->margin, polygon_free);
     }
     g_unlink(path);
     g_free(path);

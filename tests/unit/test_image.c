@@ -159,6 +159,7 @@ static void test_png_labels(void)
     for (int k = 0; k < 5; k++) {
         Plane *p = noise_plane(16, 16, 1, PLANE_LABEL);
         p->px[17] = top[k];
+        p->high = (double)top[k];
         char *path = file("label.png");
         g_assert_true(image_write_png(p, path, 8, NULL, NULL));
         Picture r = read_png(path);
@@ -342,6 +343,49 @@ static void test_same_bytes(void)
     plane_free(p);
 }
 
+/* Part of a plane's rows as a plane, whose pixels are borrowed. */
+static Plane rows_of(const Plane *p, uint32_t y0, uint32_t n)
+{
+    Plane part = *p;
+    part.px = p->px + (gsize)y0 * p->width * p->channels;
+    part.height = n;
+    return part;
+}
+
+/* Files that are written band by band have the bytes of those written whole. */
+static void test_banded(void)
+{
+    Plane *p = noise_plane(90, 203, 3, PLANE_COLOUR);
+    for (int kind = 0; kind < 2; kind++)
+        for (uint32_t band = 16; band < 203; band += 48) {
+            char *data[2], *whole = file("whole"), *banded = file("banded");
+            gsize n[2];
+            g_assert_true(kind ? image_write_png(p, whole, 8, NULL, NULL) : image_write_exr(p, whole, TRUE, NULL, NULL));
+            ImageFile *f = kind ? image_png_begin(banded, p, 203, 8, NULL, NULL) : image_exr_begin(banded, p, 203, TRUE, NULL, NULL, NULL);
+            for (uint32_t y = 0; y < 203; y += band) {
+                Plane part = rows_of(p, y, MIN(band, 203 - y));
+                g_assert_true(image_file_rows(f, &part, NULL));
+            }
+            g_assert_true(image_file_end(f, NULL));
+            g_assert_true(g_file_get_contents(whole, &data[0], &n[0], NULL) && g_file_get_contents(banded, &data[1], &n[1], NULL));
+            g_assert_true(n[0] == n[1] && memcmp(data[0], data[1], n[0]) == 0);
+            /* given up halfway, a file is as if it had never been begun */
+            f = kind ? image_png_begin(banded, p, 203, 8, NULL, NULL) : image_exr_begin(banded, p, 203, TRUE, NULL, NULL, NULL);
+            Plane part = rows_of(p, 0, band);
+            g_assert_true(image_file_rows(f, &part, NULL));
+            image_file_abort(f);
+            g_assert_cmpuint(files_in_dir(), ==, 2);
+            g_remove(whole);
+            g_remove(banded);
+            g_free(whole);
+            g_free(banded);
+            g_free(data[0]);
+            g_free(data[1]);
+        }
+    image_file_abort(NULL);
+    plane_free(p);
+}
+
 /* A folder that isn't there, and a disk that is full (a limit on file size stands for it). */
 static void test_failures(void)
 {
@@ -416,6 +460,7 @@ int main(int argc, char **argv)
     g_test_add_func("/image/exr/pixels", test_exr);
     g_test_add_func("/image/exr/labels", test_exr_labels);
     g_test_add_func("/image/same-bytes", test_same_bytes);
+    g_test_add_func("/image/banded", test_banded);
     g_test_add_func("/image/failures", test_failures);
     g_test_add_func("/image/parallel", test_parallel);
     int rc = g_test_run();

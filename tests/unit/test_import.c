@@ -22,7 +22,8 @@ static const WidthDef widths = {.exponent = 2.0, .minimum = 0.5, .rank_ratio = 0
     "<graphml><key id='x' for='node' attr.name='x'/><key id='y' for='node' attr.name='y'/><key id='t' for='node' attr.name='birth'/>"     \
     "<key id='k' for='edge' attr.name='kind'/><key id='o' for='edge' attr.name='order'/><key id='r' for='edge' attr.name='rank'/>"        \
     "<key id='v' for='edge' attr.name='vein'/><key id='w' for='edge' attr.name='width'/><key id='f' for='edge' attr.name='flow'/>"        \
-    "<key id='b' for='edge' attr.name='birth'/><key id='m' for='graph' attr.name='margin'/><key id='s' for='graph' attr.name='steps'/>"
+    "<key id='b' for='edge' attr.name='birth'/><key id='m' for='graph' attr.name='margin'/><key id='s' for='graph' attr.name='steps'/>"     \
+    "<key id='base' for='graph' attr.name='base'/><key id='tip' for='graph' attr.name='tip'/>"
 #define DIRECTED KEYS "<graph edgedefault='directed'>"
 #define UNDIRECTED KEYS "<graph edgedefault='undirected'>"
 #define END "</graph></graphml>"
@@ -83,6 +84,7 @@ static void assert_equal(const Network *a, const Network *b)
     ASSERT_ARRAY(a->vein, b->vein, a->n_edges);
     assert_near(a->width, b->width, a->n_edges, half);
     assert_near(a->flow, b->flow, a->n_edges, half);
+    g_assert_cmpfloat(fabs(a->length - b->length), <=, half);
     g_assert_cmpint(a->margin != NULL, ==, b->margin != NULL);
     if (a->margin != NULL) {
         g_assert_cmpuint(a->margin->n, ==, b->margin->n);
@@ -121,9 +123,11 @@ static void assert_sound(const Network *net)
     g_free(used);
 }
 
-static Network *grown(Pattern pattern, uint64_t seed)
+static Network *grown_in(const char *path, Pattern pattern, uint64_t seed)
 {
     OutlineDef def = outline_def_default();
+    if (path != NULL)
+        def = (OutlineDef){.path = path, .where = "test", .has_base = true, .has_tip = true, .base = vec2(0, 0), .tip = vec2(0, 10), .flatness = 1e-3};
     Polygon *leaf = outline_new(&def, NULL);
     SimulationDef d = simulation_def_default();
     d.leaf = leaf;
@@ -141,10 +145,13 @@ static Network *grown(Pattern pattern, uint64_t seed)
         ;
     Network *net = simulation_network(s);
     network_assign_widths(net, &widths);
+    net->length = simulation_blade(s)->length;
     simulation_free(s);
     polygon_free(leaf);
     return net;
 }
+
+static Network *grown(Pattern pattern, uint64_t seed) { return grown_in(NULL, pattern, seed); }
 
 /* Numbers for an index; streams 100 … are this test's. */
 static uint32_t number(uint32_t stream, uint32_t step, uint32_t index, uint32_t below)
@@ -203,8 +210,9 @@ static Network *random_network(uint32_t step)
         net->flow[e] = e % 2 == 0 ? 1e-7 + 0.02 * u[1] : 1.0 / (u[1] + 1e-15);
     }
     if (step % 3 != 0) {
-        Vec2 margin[] = {place(13, step, 0), vec2(300, -5), vec2(1.0 / 3, 400), vec2(-300, 1e-7)};
+        Vec2 margin[] = {vec2(place(13, step, 0).x, -7.7), vec2(5000, -5), vec2(1.0 / 3, 9000), vec2(-5000, 1e-7)}; /* around all */
         net->margin = polygon_new(margin, 4);
+        net->length = place(14, step, 0).y + 100.0;
     }
     return net;
 }
@@ -225,10 +233,18 @@ static void check_round_trip(Network *net)
     network_free(net);
 }
 
+/* Blades that are higher than the tip, or go below the base. */
+static const char fan[] = "M 0,0 L 8,9 L 5,13 L 1,12 L 0,10 L -1,12 L -5,13 L -8,9 Z";
+static const char kidney[] = "M 0,0 L 5,-4 L 10,3 L 7,11 L 0,10 L -7,11 L -10,3 L -5,-4 Z";
+static const char peltate[] = "M 0,-6 L 7,-3 L 8,4 L 0,10 L -8,4 L -7,-3 Z";
+
 static void test_grown(void)
 {
     for (uint64_t seed = 1; seed <= 4; seed++)
         check_round_trip(grown(seed % 2 ? PATTERN_CLOSED : PATTERN_OPEN, seed));
+    check_round_trip(grown_in(fan, PATTERN_OPEN, 5));
+    check_round_trip(grown_in(kidney, PATTERN_CLOSED, 6));
+    check_round_trip(grown_in(peltate, PATTERN_CLOSED, 7));
 }
 
 static void test_random(void)
@@ -817,6 +833,193 @@ static void test_sorted(void)
     network_free(net);
 }
 
+/* ---- where the leaf stands ---- */
+
+/* What a file does not say. */
+enum { NO_BASE = 1, NO_TIP = 2, NO_WIDTHS = 4, NO_KINDS = 8, ALL_SETS = 16 };
+
+static void put_point(GString *s, const double m[6], Vec2 p)
+{
+    export_number(s, m[0] * p.x + m[1] * p.y + m[4]);
+    g_string_append_c(s, ',');
+    export_number(s, m[2] * p.x + m[3] * p.y + m[5]);
+}
+
+/* The network with its points through x' = m0 x + m1 y + m4, y' = m2 x + m3 y + m5, to the bit. */
+static char *moved_text(const Network *net, const double m[6], unsigned less)
+{
+    GString *s = g_string_new(less & NO_KINDS ? UNDIRECTED : DIRECTED);
+    g_string_append(s, "<data key='m'>");
+    for (uint32_t i = 0; i < net->margin->n; i++) {
+        put_point(s, m, net->margin->v[i]);
+        g_string_append_c(s, ' ');
+    }
+    g_string_append(s, "</data>");
+    for (unsigned k = 0; k < 2; k++)
+        if (!(less & (k ? NO_TIP : NO_BASE))) {
+            g_string_append_printf(s, "<data key='%s'>", k ? "tip" : "base");
+            put_point(s, m, vec2(0.0, k * net->length));
+            g_string_append(s, "</data>");
+        }
+    for (uint32_t v = 0; v < net->n_nodes; v++) {
+        GString *at = g_string_new(NULL);
+        put_point(at, m, net->node[v]);
+        char *comma = strchr(at->str, ',');
+        *comma = '\0';
+        g_string_append_printf(s, "<node id='%u'><data key='x'>%s</data><data key='y'>%s</data></node>\n", v, at->str, comma + 1);
+        g_string_free(at, TRUE);
+    }
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        g_string_append_printf(s, "<edge source='%u' target='%u'>", net->tail[e], net->head[e]);
+        if (!(less & NO_KINDS))
+            g_string_append_printf(s, "<data key='k'>%s</data>", net->kind[e] == EDGE_VEIN ? "vein" : "anastomosis");
+        if (!(less & NO_WIDTHS)) {
+            g_string_append(s, "<data key='w'>");
+            export_number(s, net->width[e]);
+            g_string_append(s, "</data>");
+        }
+        g_string_append(s, "</edge>\n");
+    }
+    g_string_append(s, END);
+    return g_string_free(s, FALSE);
+}
+
+static void assert_same_leaf(const Network *a, const Network *b, double flip)
+{
+    const double most = 1e-9;
+    g_assert_cmpuint(a->n_nodes, ==, b->n_nodes);
+    g_assert_cmpuint(a->n_edges, ==, b->n_edges);
+    g_assert_cmpfloat(fabs(a->length - b->length), <=, most);
+    for (uint32_t v = 0; v < a->n_nodes; v++)
+        g_assert_cmpfloat(vec_dist(a->node[v], vec2(flip * b->node[v].x, b->node[v].y)), <=, most);
+    ASSERT_ARRAY(a->tail, b->tail, a->n_edges);
+    ASSERT_ARRAY(a->head, b->head, a->n_edges);
+    ASSERT_ARRAY(a->kind, b->kind, a->n_edges);
+    ASSERT_ARRAY(a->order, b->order, a->n_edges);
+    ASSERT_ARRAY(a->vein, b->vein, a->n_edges);
+    ASSERT_ARRAY(a->width, b->width, a->n_edges);
+    g_assert_cmpuint(a->margin->n, ==, b->margin->n);
+    for (uint32_t i = 0; i < a->margin->n; i++) { /* mirrored, the other way round from the same first point */
+        Vec2 p = b->margin->v[flip < 0.0 ? (a->margin->n - i) % a->margin->n : i];
+        g_assert_cmpfloat(vec_dist(a->margin->v[i], vec2(flip * p.x, p.y)), <=, most);
+    }
+}
+
+/* One leaf drawn anywhere, any way round and with y down is one leaf, whatever its file says. */
+static void test_moved(void)
+{
+    static const double way[][6] = {
+        {1, 0, 0, 1, 300, -500},        {1, 0, 0, 1, -300, 500},     {0, 1, -1, 0, 0, 0},            {0, -1, 1, 0, 300, -500},
+        {-1, 0, 0, -1, 17, 4},          {0.6, 0.8, -0.8, 0.6, 0, 0}, {-0.28, 0.96, -0.96, -0.28, 1e5, 3}, /* turned */
+        {1, 0, 0, -1, 0, 0},            {1, 0, 0, -1, -300, -500},   {-1, 0, 0, 1, 2, 2},            {0, 1, 1, 0, 9, 9},
+        {0.8, 0.6, 0.6, -0.8, 300, -500}, /* mirrored */
+    };
+    const char *const blades[] = {NULL, fan, kidney};
+    for (gsize b = 0; b < G_N_ELEMENTS(blades); b++) {
+        Network *net = grown_in(blades[b], PATTERN_CLOSED, 31 + b);
+        for (unsigned less = 0; less < ALL_SETS; less++) {
+            static const double still[6] = {1, 0, 0, 1, 0, 0};
+            char *text = moved_text(net, still, less);
+            Network *first = read_text(text);
+            assert_sound(first);
+            g_assert_cmpfloat(first->length, >, 0.0);
+            if (!(less & (NO_BASE | NO_TIP)))
+                g_assert_cmpfloat(first->length, ==, net->length);
+            g_free(text);
+            for (gsize k = 0; k < G_N_ELEMENTS(way); k++) {
+                text = moved_text(net, way[k], less);
+                Network *back = read_text(text);
+                assert_same_leaf(first, back, way[k][0] * way[k][3] - way[k][1] * way[k][2]);
+                g_free(text);
+                text = written(back); /* and stays where it is */
+                Network *again = read_text(text);
+                char *twice = written(again);
+                g_assert_cmpstr(text, ==, twice);
+                network_free(again);
+                network_free(back);
+                g_free(text);
+                g_free(twice);
+            }
+            network_free(first);
+        }
+        network_free(net);
+    }
+}
+
+/* What is found where base and tip are not said: in file coordinates, by where the first node comes to lie. */
+static void test_found(void)
+{
+#define BLADE "<data key='m'>0,0 4,3 3,9 0,12 -3,9 -4,3</data>"
+#define PIN NODE("a", "0", "0") NODE("b", "0", "5") NODE("c", "0", "11") NODE("d", "2", "7") EDGE("b", "d")
+    static const struct {
+        const char *text;
+        double length;
+        Vec2 node; /* the first in the network, and where the node of the file's first name comes to lie */
+        uint32_t n;
+    } cases[] = {
+        {UNDIRECTED BLADE PIN EDGE("a", "b") EDGE("b", "c") END, 12, {0, 0}, 4},
+        /* The margin begins elsewhere: the widest edge tells the base, where there are widths, and they differ. */
+        {UNDIRECTED "<data key='m'>4,3 3,9 0,12 -3,9 -4,3 0,0</data>" NODE("a", "0", "0") NODE("b", "0", "5") NODE("c", "0", "11")
+             EDGE_OF("a", "b", DATA("w", "3")) EDGE_OF("b", "c", DATA("w", "2")) END, 12, {0, 0}, 3},
+        /* The vein ends off the tip, and then so far off that the blade ends where it points. */
+        {UNDIRECTED BLADE NODE("a", "0", "0") NODE("b", "1", "9") EDGE("a", "b") END, 12, {0, 0}, 2},
+        {UNDIRECTED "<data key='m'>0,0 5,-5 10,0 10,5 -10,5 -10,0 -5,-5</data>" NODE("a", "0", "0") NODE("b", "0", "4") EDGE("a", "b") END, 5, {0, 0}, 2},
+        /* Of two first nodes the one with the wider vein; a vein that ends on the margin. */
+        {DIRECTED BLADE NODE("a", "0", "0") NODE("b", "0", "12") NODE("c", "1", "1") NODE("d", "1", "5")
+             EDGE_OF("c", "d", DATA("k", "vein") DATA("w", "2")) EDGE_OF("a", "b", DATA("k", "vein") DATA("w", "3")) END, 12, {0, 0}, 4},
+        /* No vein begins at the base. */
+        {DIRECTED BLADE "<data key='base'>0,0</data>" NODE("a", "0", "0") NODE("b", "0", "5") EDGE_OF("a", "b", DATA("k", "anastomosis")) END, 12, {0, 0}, 2},
+        /* No margin: as it stands, or from the base, or all the way. */
+        {UNDIRECTED NODE("a", "3", "4") NODE("b", "3", "9") EDGE("a", "b") END, 0, {3, 4}, 2},
+        {UNDIRECTED "<data key='base'>2,3</data>" NODE("a", "3", "4") NODE("b", "3", "9") EDGE("a", "b") END, 0, {1, 1}, 2},
+        {UNDIRECTED "<data key='base'> 2,3\n</data><data key='tip'>-8,3</data>" NODE("a", "1", "3") NODE("b", "-5", "4") EDGE("a", "b") END, 10, {0, 1}, 2},
+    };
+    for (gsize i = 0; i < G_N_ELEMENTS(cases); i++) {
+        Network *net = read_text(cases[i].text);
+        assert_sound(net);
+        g_test_message("case %zu", i);
+        g_assert_cmpuint(net->n_nodes, ==, cases[i].n);
+        g_assert_cmpfloat(fabs(net->length - cases[i].length), <=, 1e-12);
+        g_assert_cmpfloat(vec_dist(net->node[0], cases[i].node), <=, 1e-12);
+        network_free(net);
+    }
+}
+
+/* The example that documents what a person may write. */
+static void test_hand(void)
+{
+    char *path = g_test_build_filename(G_TEST_DIST, "..", "fuzz", "corpus", "network", "hand.graphml", NULL);
+    GError *error = NULL;
+    Network *net = import_graphml(path, &widths, &error);
+    g_assert_no_error(error);
+    assert_sound(net);
+    g_assert_cmpuint(net->n_edges, ==, 3);
+    g_assert_cmpfloat(net->length, ==, 900.0);
+    g_assert_cmpuint(net->kind[0] + net->kind[1] + net->kind[2], ==, 0);
+    g_assert_cmpfloat(net->width[0], ==, 12.0);
+    g_assert_cmpuint(net->vein[0], ==, net->vein[1]);
+    network_free(net);
+    g_free(path);
+}
+
+/* A margin that the file does not have. */
+static void test_inside(void)
+{
+    static const Vec2 square[] = {{-100, 0}, {100, 0}, {100, 200}, {-100, 200}};
+    Network *net = read_text(UNDIRECTED NODE("a", "0", "0") NODE("b", "0", "203.9") EDGE("a", "b") END);
+    GError *error = NULL;
+    net->margin = polygon_new(square, 4);
+    net->length = 200.0;
+    g_assert_true(import_check_inside(net, "leaf", &error));
+    net->node[1].y = 204.1;
+    g_assert_false(import_check_inside(net, "leaf", &error));
+    g_assert_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH);
+    g_assert_cmpstr(error->message, ==, "leaf: the node at 0,204.1 lies 4.1 segments outside the margin; in a leaf 200 segments long it must be at most 4 "
+                                        "(a petiole is not drawn: mesh.petiole_length makes one)");
+    g_error_free(error);
+    network_free(net);
+}
+
 /* ---- ways to write ---- */
 
 static void test_writing(void)
@@ -1003,6 +1206,21 @@ static void test_errors(void)
          "leaf.graphml:3: edge 'c' – 'a': edges of kind vein run in a circle through the nodes 'a', 'c', 'b'; one of them must be an *"},
         {UNDIRECTED THREE VEIN("a", "b") LINES VEIN("b", "c") VEIN("c", "a") END, IMPORT_ERROR_GRAPH,
          "leaf.graphml:3: edge 'c' – 'a': edges of kind vein run in a circle through the nodes 'c', 'b', 'a'; one of them must be an *"},
+        {UNDIRECTED LINES "<data key='base'>1</data>" END, IMPORT_ERROR_SYNTAX,
+         "leaf.graphml:3: the graph: base is '1'; it must be a point x,y of numbers from -1e9 to 1e9, in segments"},
+        {UNDIRECTED LINES "<data key='tip'>1,2 3,4</data>" END, IMPORT_ERROR_SYNTAX, "leaf.graphml:3: the graph: tip is '1,2 3,4'; *"},
+        {UNDIRECTED LINES "<data key='tip'>1,2</data><data key='tip'>1,2</data>" END, IMPORT_ERROR_SYNTAX, "*: tip is given a second time"},
+        {UNDIRECTED "<data key='base'>1,2</data><data key='tip'>1,2</data>" TWO EDGE("a", "b") END, IMPORT_ERROR_GRAPH,
+         "leaf.graphml: the leaf is 0 segments long, from its base at 1,2 to its tip at 1,2; it must be at least 0.001"},
+        {UNDIRECTED "<data key='base'>1e9,2</data>" LINES NODE("a", "-1e9", "0") NODE("b", "1e9", "0") EDGE("a", "b") END, IMPORT_ERROR_GRAPH,
+         "leaf.graphml:3: node 'a' lies at -2e+09,-2 seen from the leaf base; it must lie within 1e+09"},
+        {UNDIRECTED "<data key='m'>0,0 1e-4,2e-4 0,3e-4</data>" NODE("a", "0", "0") NODE("b", "0", "1e-4") EDGE("a", "b") END, IMPORT_ERROR_GRAPH,
+         "leaf.graphml: the leaf is 0.0003 segments long, *"},
+        {UNDIRECTED "<data key='m'>0,0 50,50 0,100 -50,50</data>" TWO EDGE("a", "b") NODE("c", "0", "60") EDGE("b", "c") LINES NODE("d", "0", "-30")
+             EDGE("d", "a") END, IMPORT_ERROR_GRAPH,
+         "leaf.graphml:3: node 'd' lies 30 segments outside the margin; in a leaf 100 segments long it must be at most 2 (a petiole is not *"},
+        {UNDIRECTED "<data key='m'>0,0 50,50 0,100 -50,50</data>" TWO EDGE("a", "b") LINES NODE("c", "90", "60") NODE("d", "90", "70") EDGE("c", "d")
+             END, IMPORT_ERROR_GRAPH, "leaf.graphml:3: node 'c' lies * outside the margin; *"},
         {DIRECTED DATA("s", "4") LINES "<node id='a'><data key='x'>0</data><data key='y'>0</data><data key='t'>0</data></node><node id='b'>"
                                        "<data key='x'>0</data><data key='y'>1</data><data key='t'>5</data></node>" VEIN("a", "b") END,
          IMPORT_ERROR_GRAPH, "leaf.graphml: steps is 4, but the last birth is in step 5; steps must be at least that"},
@@ -1148,6 +1366,10 @@ int main(int argc, char **argv)
     g_test_add_func("/import/vein-numbers", test_vein_numbers);
     g_test_add_func("/import/vein-runs", test_vein_runs);
     g_test_add_func("/import/sorted", test_sorted);
+    g_test_add_func("/import/moved", test_moved);
+    g_test_add_func("/import/found", test_found);
+    g_test_add_func("/import/hand", test_hand);
+    g_test_add_func("/import/inside", test_inside);
     g_test_add_func("/import/writing", test_writing);
     g_test_add_func("/import/numbers", test_numbers);
     g_test_add_func("/import/margins", test_margins);

@@ -384,39 +384,86 @@ static void test_opacity(void)
     network_free(net);
 }
 
-/* Each pixel beyond the margin has the colour of a nearest pixel of the blade, as far as the padding goes. */
+/* A network without veins, whose blade and scale are those of `net`. */
+static Network *net_bare(const Network *net)
+{
+    return net_new(1, 0, net->margin->v, net->margin->n);
+}
+
+/* Beyond the margin lies what a blade without veins would have there, as far as the padding goes, whatever veins end at the margin. */
 static void test_padding(void)
 {
-    Network *net = net_tree(40, 12, 1.0, 2);
+    static const MapId id[] = {MAP_BASE_COLOR, MAP_ABAXIAL_BASE_COLOR, MAP_ROUGHNESS, MAP_TRANSLUCENCY, MAP_HEIGHT, MAP_THICKNESS};
+    Network *net = net_straws(60, 3.0, 2), *bare = net_bare(net);
+    for (uint32_t i = 0; i < 30; i++) /* veins that cross the margin */
+        net->node[2 * i] = vec2(30.0 * (i % 2 != 0 ? 1.0 : -1.0), 1.3 * i);
     Frame f = {90, 70, 1.2, {-30.0, 45.0}};
     PaintStyle style = paint_style_default();
-    style.padding = 6;
-    Painter *p = painter_new(net, &f, &style);
-    Plane *c = painter_paint(p, MAP_BASE_COLOR);
+    style.padding = 6 * 2048 / 90;
+    style.reference = net;
+    Painter *p = painter_new(net, &f, &style), *q = painter_new(bare, &f, &style);
     const float *blade = painter_blade(p);
-    for (int y = 0; y < 70; y++)
-        for (int x = 0; x < 90; x++) {
-            const float *px = c->px + 3 * (y * 90 + x);
-            long best = 1000000;
-            bool same = false;
-            for (int v = 0; v < 70; v++)
-                for (int u = 0; u < 90; u++) {
-                    long d = (long)(u - x) * (u - x) + (long)(v - y) * (v - y);
-                    if (blade[v * 90 + u] <= 0.0f || d > best)
-                        continue;
-                    same = (d == best && same) || memcmp(px, c->px + 3 * (v * 90 + u), 3 * sizeof(float)) == 0;
-                    best = d;
-                }
-            if (best <= 36)
-                g_assert_true(same);
-            else
-                g_assert_true(px[0] == 0.0f && px[1] == 0.0f && px[2] == 0.0f);
+    for (int k = 0; k < 6; k++) {
+        Plane *c = painter_paint(p, id[k]), *d = painter_paint(q, id[k]);
+        uint32_t nc = c->channels;
+        for (int y = 0; y < 70; y++)
+            for (int x = 0; x < 90; x++) {
+                gsize at = (gsize)(y * 90 + x);
+                if (blade[at] > 0.0f)
+                    continue;
+                const float *px = c->px + nc * at;
+                Vec2 leaf = vec2(-30.0 + (x + 0.5) / 1.2, 45.0 - (y + 0.5) / 1.2);
+                Vec2 foot = vec2(CLAMP(leaf.x, -20.0, 20.0), CLAMP(leaf.y, 0.0, 40.0));
+                bool padded = vec_dist(leaf, foot) * 1.2 <= style.padding * 90.0 / 2048.0;
+                g_assert_true(memcmp(px, d->px + nc * at, nc * sizeof(float)) == 0);
+                g_assert_true((px[0] != 0.0f) == padded);
+            }
+        plane_free(c);
+        plane_free(d);
+    }
+    painter_free(p);
+    painter_free(q);
+    network_free(net);
+    network_free(bare);
+}
+
+/* It goes on from the blade's edge without a step. */
+static void test_padding_step(void)
+{
+    Network *net = net_new(1, 0, square, 4);
+    Frame f = {900, 100, 20.0, {-22.5, 30.0}};
+    Painter *p = painter_at(net, &f, 2);
+    Plane *c = painter_paint(p, MAP_BASE_COLOR);
+    for (uint32_t y = 0; y < 100; y++) { /* the left margin is at x = 50 */
+        const float *px = c->px + 3 * (900 * y + 49);
+        g_assert_true(painter_blade(p)[900 * y + 49] == 0.0f && painter_blade(p)[900 * y + 50] > 0.0f);
+        for (int i = 0; i < 3; i++) {
+            g_assert_cmpfloat(px[i], >, 0.0f);
+            g_assert_cmpfloat(fabs((double)(px[i + 3] - px[i])), <, 0.02);
         }
-    Plane *o = painter_paint(p, MAP_OPACITY);
-    g_assert_cmpmem(o->px, 90 * 70 * sizeof(float), blade, 90 * 70 * sizeof(float));
-    plane_free(o);
+    }
     plane_free(c);
     painter_free(p);
+    network_free(net);
+}
+
+/* Larger maps have more padding: as much of the leaf. */
+static void test_padding_scale(void)
+{
+    Network *net = net_new(1, 0, square, 4);
+    for (uint32_t size = 256; size <= 1024; size *= 2) {
+        Frame f = {size, 1, size / 80.0, {-40.0, 20.0}};
+        PaintStyle style = paint_style_default();
+        style.padding = 128;
+        Painter *p = painter_new(net, &f, &style);
+        Plane *c = painter_paint(p, MAP_BASE_COLOR);
+        uint32_t n = 0;
+        for (uint32_t x = 0; x < size / 4; x++)
+            n += c->px[3 * x + 1] > 0.0f;
+        g_assert_cmpuint(n, ==, size / 16);
+        plane_free(c);
+        painter_free(p);
+    }
     network_free(net);
 }
 
@@ -438,7 +485,7 @@ static void test_distance(void)
                     double t = CLAMP(vec_dot(vec_sub(q, a), ab) / vec_norm2(ab), 0.0, 1.0);
                     least = MIN(least, vec_dist(q, vec_lerp(a, b, t)) - 0.5 * net->width[e]);
                 }
-                double want = p->blade[y * f.width + x] > 0.0f ? MAX(least, 0.0) : 0.0;
+                double want = painter_blade(p)[y * f.width + x] > 0.0f ? MAX(least, 0.0) : 0.0;
                 g_assert_cmpfloat(fabs((double)d->px[y * f.width + x] - want), <, 1e-5);
             }
         plane_free(d);
@@ -606,6 +653,42 @@ static void test_merge(void)
     network_free(net);
 }
 
+/* Veins of each size show on the sunny side and by the dark beside them, the smaller the fainter, down to those that are as the net. */
+static void test_small_relief(void)
+{
+    static const double width[] = {2.0, 0.4, 0.1, 0.003};
+    Network *net = net_new(8, 4, square, 4);
+    for (uint32_t e = 0; e < 4; e++) {
+        net->tail[e] = 2 * e;
+        net->head[e] = 2 * e + 1;
+        net->node[2 * e] = vec2(-12.0 + 8.0 * e, 1.0);
+        net->node[2 * e + 1] = vec2(-12.0 + 8.0 * e, 39.0);
+        net->vein[e] = e;
+        net->width[e] = width[e];
+    }
+    net->n_veins = 4;
+    Frame f = {1600, 1, 40.0, {-20.0, 20.0}};
+    Painter *p = painter_at(net, &f, 2);
+    Plane *ao = painter_paint(p, MAP_AO), *normal = painter_paint(p, MAP_ADAXIAL_NORMAL_GL);
+    double dark[4], tilt[4];
+    for (int e = 0; e < 4; e++) {
+        dark[e] = tilt[e] = 0.0;
+        for (int x = 320 * e + 160; x < 320 * e + 480; x++) {
+            dark[e] = MAX(dark[e], 1.0 - (double)ao->px[x]);
+            if (abs(x - 320 * e - 320) < 20)
+                tilt[e] = MAX(tilt[e], fabs((double)normal->px[3 * x] - 0.5));
+        }
+        g_assert_cmpfloat(ao->px[320 * e + 320], >, 0.99f); /* not on the vein */
+    }
+    g_assert_true(dark[0] > 0.2 && dark[1] > 0.1 && dark[2] > 0.04 && dark[0] > dark[1] && dark[1] > dark[2]);
+    g_assert_cmpfloat(dark[3], <, 0.01);
+    g_assert_true(tilt[1] > tilt[3] + 0.03 && tilt[2] > tilt[3] + 0.02); /* the net's own arch is everywhere */
+    plane_free(ao);
+    plane_free(normal);
+    painter_free(p);
+    network_free(net);
+}
+
 /* ---- looks ---- */
 
 /* Pixels that the margin cuts have the colour of what the blade is there, a vein's when it is a vein. */
@@ -621,7 +704,7 @@ static void test_edge_colour(void)
     style.variation = 0.0;
     Painter *p = painter_new(net, &f, &style);
     Plane *c = painter_paint(p, MAP_BASE_COLOR);
-    g_assert_cmpfloat(fabs((double)p->blade[99 * 120 + 60] - 0.8), <, 1e-5);
+    g_assert_cmpfloat(fabs((double)painter_blade(p)[99 * 120 + 60] - 0.8), <, 1e-5);
     for (int i = 0; i < 3; i++)
         g_assert_cmpfloat(fabs((double)c->px[3 * (99 * 120 + 60) + i] / (double)c->px[3 * (90 * 120 + 60) + i] - 1.0), <, 0.03);
     plane_free(c);
@@ -656,6 +739,34 @@ static void test_stout(void)
         g_assert_cmpfloat(fabs((double)(vein[0][i] - vein[1][i])), <, 0.02);
 }
 
+/* A vein's colour goes by its width and as smoothly as that; a change of order does not show. */
+static void test_strength(void)
+{
+    Network *net = net_new(81, 80, square, 4);
+    for (uint32_t i = 0; i <= 80; i++)
+        net->node[i] = vec2(0.0, 0.45 * i + 1.0);
+    for (uint32_t e = 0; e < 80; e++) {
+        net->tail[e] = e;
+        net->head[e] = e + 1;
+        net->width[e] = 2.5 - 0.025 * e;
+        net->order[e] = (uint8_t)(1 + e / 20);
+        net->vein[e] = e / 20;
+    }
+    net->n_veins = 4;
+    Frame f = {400, 400, 10.0, {-20.0, 40.0}};
+    PaintStyle style = paint_style_default();
+    style.variation = 0.0;
+    Painter *p = painter_new(net, &f, &style);
+    Plane *c = painter_paint(p, MAP_BASE_COLOR);
+    const float *px = c->px + 3 * 200;
+    for (uint32_t y = 45; y < 380; y++) /* down the vein, which tapers */
+        g_assert_cmpfloat(fabs((double)(px[1200 * y] - px[1200 * (y + 1)])), <, 0.012);
+    g_assert_cmpfloat((double)px[1200 * 370], >, 1.3 * (double)px[1200 * 50]);
+    plane_free(c);
+    painter_free(p);
+    network_free(net);
+}
+
 static double spread(const Plane *c, const float *blade, uint32_t channel)
 {
     double low = 1.0, high = 0.0;
@@ -685,11 +796,11 @@ static void test_colours(void)
             Plane *c = painter_paint(p, MAP_BASE_COLOR);
             for (uint32_t i = 0; i < 3; i++) {
                 double lamina = (double)style.lamina[i], vein = (double)style.vein[i], contrast = fabs(lamina - vein);
-                g_assert_cmpfloat(spread(c, p->blade, i), <=, 1.2 * contrast + 0.16 * MIN(vein, 1.0 - vein) + 1e-3);
+                g_assert_cmpfloat(spread(c, painter_blade(p), i), <=, 1.2 * contrast + 0.16 * MIN(vein, 1.0 - vein) + 1e-3);
                 if (same == 0)
-                    g_assert_cmpfloat(spread(c, p->blade, i), >=, 0.7 * contrast - 0.02);
+                    g_assert_cmpfloat(spread(c, painter_blade(p), i), >=, 0.7 * contrast - 0.02);
                 for (gsize j = 0; j < 256 * 256 && k == 0; j++)
-                    if (p->blade[j] == 1.0f)
+                    if (painter_blade(p)[j] == 1.0f)
                         g_assert_cmpfloat((double)c->px[3 * j + i], <=, MIN(lamina + 0.06 * contrast, 1.0) + 2e-3);
             }
             plane_free(c);
@@ -758,6 +869,85 @@ static void test_threads(void)
     for (int i = 0; i <= MAP_COUNT; i++)
         plane_free(first[i]);
     network_free(net);
+}
+
+/* Bands of any height, in any order, hold the pixels that the whole has. */
+static void test_bands(void)
+{
+    Network *net = net_tree(150, 15, 1.0, 3), *sparse = net_tree(3, 15, 1.0, 3);
+    Frame f = frame_fit(net->margin->box, 300, true, 0.1);
+    for (int k = 0; k < 2; k++) {
+        static const uint32_t heights[] = {1, 7, 32, 100, 299};
+        Painter *whole = painter_at(k == 0 ? net : sparse, &f, 1);
+        Plane *want[MAP_COUNT + 1];
+        for (int i = 0; i <= MAP_COUNT; i++)
+            want[i] = i == MAP_COUNT ? painter_veins(whole) : painter_paint(whole, (MapId)i);
+        for (int h = 0; h < 5; h++) {
+            Painter *p = painter_at(k == 0 ? net : sparse, &f, h % 2 != 0 ? 3 : 1);
+            uint32_t n = (f.height - 1) / heights[h] + 1;
+            for (uint32_t b = 0; b < n; b++) {
+                uint32_t y0 = (h == 3 ? n - 1 - b : b) * heights[h], y1 = MIN(y0 + heights[h], f.height);
+                painter_band(p, y0, y1);
+                for (int i = (int)(b % 3); i <= MAP_COUNT; i++) { /* not every map in every band */
+                    Plane *plane = i == MAP_COUNT ? painter_veins(p) : painter_paint(p, (MapId)i);
+                    gsize row = (gsize)f.width * plane->channels;
+                    g_assert_cmpuint(plane->height, ==, y1 - y0);
+                    g_assert_true(plane->low == want[i]->low && plane->high == want[i]->high);
+                    g_assert_true(memcmp(plane->px, want[i]->px + row * y0, row * (y1 - y0) * sizeof(float)) == 0);
+                    plane_free(plane);
+                }
+            }
+            painter_free(p);
+        }
+        for (int i = 0; i <= MAP_COUNT; i++)
+            plane_free(want[i]);
+        painter_free(whole);
+    }
+    network_free(net);
+    network_free(sparse);
+}
+
+static const Capsule *any_stroke(uint32_t i, const void *user) { return &((const Capsule *)user)[i]; }
+static Capsule any_area(uint32_t i, const void *user) { return ((const Capsule *)user)[i]; }
+
+/* Distances to strokes near and far, few and many, with a limit and without, and which stroke it is. */
+static void test_nearest(void)
+{
+    static const uint32_t count[] = {0, 1, 3, 500};
+    static const double limit[] = {1e6, 20.0};
+    const uint32_t w = 210, h = 170;
+    Pool *pool = pool_new(2);
+    float *distance = g_new(float, w * h);
+    uint32_t *which = g_new(uint32_t, w * h);
+    uint64_t c = 77;
+    for (int k = 0; k < 8; k++) {
+        uint32_t n = count[k / 2];
+        Capsule *stroke = g_new(Capsule, n + 1);
+        for (uint32_t i = 0; i < n; i++) {
+            Vec2 a = vec2(uniform(&c) * w, uniform(&c) * h), b = vec2(a.x + 40.0 * (uniform(&c) - 0.5), a.y + 40.0 * (uniform(&c) - 0.5));
+            stroke[i] = capsule_new(a, 3.0 * uniform(&c), b, uniform(&c));
+        }
+        Bins bins;
+        bins_init(&bins, w, h, n, any_area, stroke);
+        Nearest *q = nearest_new(&bins, n, any_stroke, stroke, limit[k % 2]);
+        nearest_fill(q, pool, 0, h, NULL, distance, which);
+        for (uint32_t i = 0; i < w * h; i++) {
+            Vec2 at = vec2(i % w + 0.5, i / w + 0.5);
+            double least = limit[k % 2], t;
+            for (uint32_t s = 0; s < n; s++)
+                least = MIN(least, capsule_distance(&stroke[s], at, &t));
+            g_assert_cmpfloat(fabs((double)distance[i] - least), <, 1e-4);
+            g_assert_true((which[i] == 0xFFFFFFFFu) == ((double)distance[i] >= limit[k % 2]));
+            if (which[i] != 0xFFFFFFFFu)
+                g_assert_cmpfloat(fabs(capsule_distance(&stroke[which[i]], at, &t) - least), <, 1e-4);
+        }
+        nearest_free(q);
+        bins_clear(&bins);
+        g_free(stroke);
+    }
+    g_free(distance);
+    g_free(which);
+    pool_free(pool);
 }
 
 /* No veins, no blade, images of one pixel: nothing breaks. */
@@ -831,16 +1021,22 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/coverage/sizes", test_area_over_sizes);
     g_test_add_func("/paint/opacity", test_opacity);
     g_test_add_func("/paint/padding", test_padding);
+    g_test_add_func("/paint/padding/step", test_padding_step);
+    g_test_add_func("/paint/padding/scale", test_padding_scale);
+    g_test_add_func("/paint/nearest", test_nearest);
     g_test_add_func("/paint/distance", test_distance);
     g_test_add_func("/paint/labels/thin", test_thin_labels);
     g_test_add_func("/paint/labels/priority", test_label_priority);
     g_test_add_func("/paint/normals", test_normals);
     g_test_add_func("/paint/merge", test_merge);
     g_test_add_func("/paint/edge-colour", test_edge_colour);
+    g_test_add_func("/paint/small-relief", test_small_relief);
     g_test_add_func("/paint/stout", test_stout);
+    g_test_add_func("/paint/strength", test_strength);
     g_test_add_func("/paint/colours", test_colours);
     g_test_add_func("/paint/band", test_band);
     g_test_add_func("/paint/threads", test_threads);
+    g_test_add_func("/paint/bands", test_bands);
     g_test_add_func("/paint/degenerate", test_degenerate);
     g_test_add_func("/paint/frame", test_frame);
     g_test_add_func("/paint/infos", test_infos);
