@@ -11,7 +11,7 @@ set -- \
     "kill-distance|9a–e|search: kill distance" "dart-density|9f–h|search: dart density" "slow-marginal|9i|slow marginal growth" \
     "ginkgo|10|ginkgo" "alchemilla|11|lady’s mantle" "sweetgum|12|sweetgum" \
     "toothed|13|toothed margin" "tertiary|13|tertiary veins" "orchid|14|orchid" \
-    "reticulate|15|reticulate pattern" "cherry|16|Nankin cherry" "grass|14, 17|grass" \
+    "reticulate|15|reticulate pattern" "cherry|16|Nankin cherry" "grass|14, 17|grass, a piece of the blade" \
     "poplar|18, 19|poplar" "developmental|20|developmental" "trillium|21|trillium petal"
 count=$# number=0 cells=
 for model in "$@"; do
@@ -19,10 +19,13 @@ for model in "$@"; do
     figure=${rest%%|*} label=${rest#*|}
     number=$((number + 1))
     echo "$number/$count $name" >&2
-    "$venation" grow "$params/$name.ini" -o "$work/$name" --size $((cell * 2)) --maps "base_color opacity" \
+    # A blade of grass would be a thin plain strip: a piece of it is shown.
+    size=$((cell * 2)) piece=
+    [ "$name" = grass ] && size=$((cell * 10)) piece="-gravity center -crop $((cell * 17 / 10))x$((cell * 17 / 10))+0+0 +repage"
+    "$venation" grow "$params/$name.ini" -o "$work/$name" --size "$size" --maps "base_color opacity" \
         --set texture.exr=none --set texture.margin=0.03 --set export.network=no --set export.svg=no --set export.veins_image=no
     convert "$work/$name/${name}_base_color.png" "$work/$name/${name}_opacity.png" -alpha off -compose CopyOpacity -composite -compose Over \
-        -resize "${cell}x${cell}" -background white -gravity center -extent "${cell}x${cell}" -flatten \
+        $piece -resize "${cell}x${cell}" -background white -gravity center -extent "${cell}x${cell}" -flatten \
         -gravity south -splice "0x$((cell / 10))" -font DejaVu-Sans -pointsize $((cell / 22)) -fill '#333333' \
         -annotate "+0+$((cell / 40))" "$label (fig. $figure)" "$work/$name.png"
     cells="$cells $work/$name.png"

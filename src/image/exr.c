@@ -8,7 +8,7 @@
 #include "image/staged.h"
 
 enum { CHUNK_ROWS = IMAGE_BAND, BATCH = 64 }; /* rows of a ZIP chunk; chunks compressed at a time */
-enum { ZIP_LEVEL = 2 }; /* a full set of 4096 pixels: 180 MB, at level 4 171 MB in about a quarter more time */
+enum { ZIP_LEVEL = 2 }; /* a full set of 4096 pixels: 180 MB, at level 4 171 MB, which takes longer */
 
 typedef struct {
     ImageFile base;

@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <glib/gstdio.h>
 
-#include "geom/parallel.h"
 #include "lib/settings.h"
 
 /* Where there is no scan of the shadow side, it is the sunny side's in the shadow side's shade. */
@@ -64,43 +63,6 @@ char *writer_path(const Writer *w, const char *suffix)
     char *file = g_strdup_printf("%s%s", w->name, suffix), *path = g_build_filename(w->dir, file, NULL);
     g_free(file);
     return path;
-}
-
-/* One map in up to two formats, which are independent and so written side by side. */
-typedef struct {
-    const Writer *writer;
-    const Plane *plane;
-    const char *name;
-    int depth;
-    GError *error[2];
-} MapJob;
-
-static void write_map_format(uint32_t first, uint32_t last, void *user)
-{
-    MapJob *job = user;
-    for (uint32_t i = first; i < last; i++) {
-        if (i == 1 && !job->writer->exr)
-            continue;
-        char *suffix = g_strdup_printf("_%s.%s", job->name, i == 0 ? "png" : "exr"), *path = writer_path(job->writer, suffix);
-        if (i == 0)
-            image_write_png(job->plane, path, job->depth, &job->writer->meta, &job->error[i]);
-        else
-            image_write_exr(job->plane, path, job->writer->exr == 1, &job->writer->meta, &job->error[i]);
-        g_free(path);
-        g_free(suffix);
-    }
-}
-
-gboolean writer_map(const Writer *w, const Plane *plane, const char *map, int depth, GError **error)
-{
-    MapJob job = {.writer = w, .plane = plane, .name = map, .depth = depth};
-    parallel_for(w->leaf->threads, 2, 1, write_map_format, &job);
-    if (job.error[0] && job.error[1])
-        g_clear_error(&job.error[1]);
-    GError *failed = job.error[0] ? job.error[0] : job.error[1];
-    if (failed)
-        g_propagate_error(error, failed);
-    return failed == NULL;
 }
 
 Painter *writer_painter(const Writer *w, const Frame *frame)

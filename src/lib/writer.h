@@ -28,9 +28,6 @@ char *writer_path(const Writer *w, const char *suffix);
 /* Makes the folder and those above it where they are missing. */
 gboolean writer_make_dir(const Writer *w, GError **error);
 
-/* <name>_<map>.png and, where wanted, .exr, side by side. */
-gboolean writer_map(const Writer *w, const Plane *plane, const char *map, int depth, GError **error);
-
 /* A painter of the leaf as its parameters ask; `frame` and the leaf outlive it. */
 Painter *writer_painter(const Writer *w, const Frame *frame);
 
