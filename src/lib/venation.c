@@ -60,10 +60,15 @@ static VenLeaf *leaf_new(const Params *params, Ground *ground, const SimulationD
     leaf->seed = def->seed;
     leaf->threads = def->threads;
     leaf->net = simulation_network(sim);
+    double shortest = params_number(params, PARAM_VEINS_SHORTEST);
+    bool pruned = shortest > 0.0 && simulation_counts(sim).end != END_RUNNING && !def->given; /* drawn veins may be as short as they are */
+    if (pruned)
+        leaf->net = network_prune(leaf->net, shortest);
     network_assign_widths(leaf->net, &widths);
     if (def->given)
         network_keep_drawn(leaf->net, &widths, def->given, simulation_given(sim));
     leaf->counts = simulation_counts(sim);
+    leaf->counts.nodes = leaf->net->n_nodes;
     leaf->length = leaf->net->length = blade->length;
     leaf->growth_steps = blade->last_step;
     leaf->stage = blade->widest;

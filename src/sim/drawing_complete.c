@@ -134,34 +134,6 @@ static void number_veins(Completing *c)
             net->vein[e] = net->n_veins++;
 }
 
-/* ---- ranks, as sim/width.h has them, by the widths as they are now ---- */
-
-static uint8_t branch_rank(const Network *net, uint32_t e, uint32_t p, double widest, double ratio)
-{
-    if (net->vein[e] == net->vein[p] || net->order[e] == 1 || net->width[e] >= ratio * net->width[p])
-        return net->rank[p];
-    uint8_t class = 1, lower = (uint8_t)MIN(net->rank[p] + 1, 9);
-    for (double w = widest * ratio; net->width[e] < w && class < 9; w *= ratio)
-        class++;
-    return MAX(class, lower);
-}
-
-static void set_ranks(Completing *c)
-{
-    Network *net = c->net;
-    double widest = 0.0;
-    for (uint32_t e = 0; e < net->n_edges; e++)
-        widest = MAX(widest, net->width[e]);
-    for (uint32_t e = 0; e < net->n_edges; e++) {
-        uint32_t p = parent(c, e), q = c->entry[net->head[e]];
-        net->rank[e] = p == NONE ? 1 : net->rank[p];
-        if (net->kind[e] != EDGE_VEIN) /* these come last */
-            net->rank[e] = q == NONE ? net->rank[e] : MAX(net->rank[e], net->rank[q]);
-        else if (p != NONE)
-            net->rank[e] = branch_rank(net, e, p, widest, c->s->def->widths.rank_ratio);
-    }
-}
-
 void sketch_complete(const Sketch *s, Network *net, const uint32_t *line, const double *width)
 {
     uint32_t n = net->n_nodes, m = net->n_edges;
@@ -177,7 +149,7 @@ void sketch_complete(const Sketch *s, Network *net, const uint32_t *line, const 
         net->order[e] = net->kind[e] == EDGE_VEIN ? vein_order(&c, e) : anastomosis_order(&c, e);
     set_widths(&c);
     number_veins(&c);
-    set_ranks(&c);
+    network_assign_ranks(net, &s->def->widths);
     g_free(c.entry);
     g_free(c.first);
     g_free(c.next);

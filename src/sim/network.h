@@ -33,4 +33,9 @@ struct Network {
 Network *network_new(uint32_t n_nodes, uint32_t n_edges);
 void network_free(Network *n);
 
+/* Without its spurs: runs of veins from a branching to a free end that are shorter than `shortest` and end farther than that from the margin, as an open
+ * pattern has where a source let go of a vein that had just set out for it. The longest vein of a fork stays. Takes `net`; returns the rest, widths and orders not
+ * set. O(nodes + edges + free ends · margin). */
+Network *network_prune(Network *net, double shortest);
+
 #endif

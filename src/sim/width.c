@@ -4,7 +4,7 @@
 
 #include "geom/dmath.h"
 
-enum { NONE = UINT32_MAX };
+enum { NONE = UINT32_MAX, RANKS = 250 };
 
 /* A branch is a primary too when it leaves within this part of the leaf length from a first node … */
 static const double primary_reach = 0.06;
@@ -119,26 +119,40 @@ static void assign_orders(Network *net, Chains in, Chains out, const uint32_t *r
     }
 }
 
-/* A node's order is that of the vein that grew it; an anastomosis takes the higher (finer) of its ends'. `of`: not those that were drawn. */
-static void assign_anastomoses(Network *net, Chains in, const uint32_t *of)
+/* What an anastomosis takes from its ends: the higher (finer) of what the veins that lead there have. */
+static uint8_t of_ends(const Network *net, Chains in, uint32_t e, const uint8_t *what)
 {
-    for (uint32_t e = 0; e < net->n_edges; e++) {
-        if (net->kind[e] != EDGE_ANASTOMOSIS || (of && of[e] != NONE))
-            continue;
-        uint8_t order = 1, rank = 1;
-        const uint32_t end[2] = {net->tail[e], net->head[e]};
-        for (int i = 0; i < 2; i++)
-            for (uint32_t k = in.first[end[i]]; k != NONE; k = in.next[k])
-                if (net->kind[k] == EDGE_VEIN) {
-                    order = MAX(order, net->order[k]);
-                    rank = MAX(rank, net->rank[k]);
-                }
-        start_vein(net, e, order);
-        net->rank[e] = rank;
-    }
+    const uint32_t end[2] = {net->tail[e], net->head[e]};
+    uint8_t most = 1;
+    for (int i = 0; i < 2; i++)
+        for (uint32_t k = in.first[end[i]]; k != NONE; k = in.next[k])
+            if (net->kind[k] == EDGE_VEIN)
+                most = MAX(most, what[k]);
+    return most;
 }
 
-static void assign_ranks(Network *net, Chains in, Chains out, double ratio)
+/* Orders of anastomoses; `of`: not of those that were drawn. */
+static void assign_anastomoses(Network *net, Chains in, const uint32_t *of)
+{
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        if (net->kind[e] == EDGE_ANASTOMOSIS && !(of && of[e] != NONE))
+            start_vein(net, e, of_ends(net, in, e, net->order));
+}
+
+/* Renumbers ranks so that none between 1 and the greatest is without an edge. */
+static void close_ranks(Network *net)
+{
+    uint8_t name[RANKS + 1] = {0}, next = 1;
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        name[net->rank[e]] = 1;
+    for (uint32_t k = 0; k <= RANKS; k++)
+        if (name[k])
+            name[k] = next++;
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        net->rank[e] = name[net->rank[e]];
+}
+
+static void rank_veins(Network *net, Chains in, Chains out, double ratio)
 {
     double widest = 0.0;
     for (uint32_t e = 0; e < net->n_edges; e++)
@@ -154,13 +168,30 @@ static void assign_ranks(Network *net, Chains in, Chains out, double ratio)
                 net->rank[e] = net->rank[entry];
             } else {
                 uint8_t class = 1;
-                for (double w = widest * ratio; net->width[e] < w && class < 9; w *= ratio)
+                for (double w = widest * ratio; net->width[e] < w && class < RANKS; w *= ratio)
                     class++;
-                uint8_t lower = (uint8_t)MIN(net->rank[entry] + 1, 9);
+                uint8_t lower = (uint8_t)MIN(net->rank[entry] + 1, RANKS);
                 net->rank[e] = class > lower ? class : lower;
             }
         }
     }
+}
+
+static void assign_ranks(Network *net, Chains in, Chains out, double ratio)
+{
+    rank_veins(net, in, out, ratio);
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        if (net->kind[e] == EDGE_ANASTOMOSIS)
+            net->rank[e] = of_ends(net, in, e, net->rank);
+    close_ranks(net);
+}
+
+void network_assign_ranks(Network *net, const WidthDef *def)
+{
+    Chains in = chains_new(net, net->head), out = chains_new(net, net->tail);
+    assign_ranks(net, in, out, def->rank_ratio);
+    chains_free(in);
+    chains_free(out);
 }
 
 /* First node of each node's tree, or NONE once farther from it than `reach`. */
@@ -270,11 +301,8 @@ void network_keep_drawn(Network *net, const WidthDef *def, const Network *drawn,
     }
     derive_orders(net, in, out, of, flow_vein);
     limit_widths(net, in, out, of);
-    assign_ranks(net, in, out, def->rank_ratio);
-    for (uint32_t e = 0; e < net->n_edges; e++)
-        if (of[e] != NONE && net->kind[e] == EDGE_ANASTOMOSIS)
-            net->rank[e] = drawn->rank[of[e]];
     assign_anastomoses(net, in, of);
+    assign_ranks(net, in, out, def->rank_ratio);
     g_free(of);
     g_free(flow_vein);
     chains_free(in);

@@ -22,7 +22,7 @@ WidthDef width_def_default(void);
  * Order: at every branching the widest child continues the vein (ties: the older child), the others begin veins of the next order;
  * wide veins that leave the main one near the base are primaries as well (actinodromous venation). An anastomosis is a vein of its own, of the
  * higher of the two orders it joins. Rank: by the width at a vein's origin, in classes of ratio `rank_ratio` from
- * the widest primary down; a fork of nearly equal veins keeps the rank. O(nodes + edges). */
+ * the widest primary down; a fork of nearly equal veins keeps the rank; classes without a vein are passed over. O(nodes + edges). */
 void network_assign_widths(Network *net, const WidthDef *def);
 
 /* After that: edges that were drawn (given[n] is the number of each of its nodes in `net`, UINT32_MAX for none) get the orders, veins and, where
@@ -30,5 +30,8 @@ void network_assign_widths(Network *net, const WidthDef *def);
  * the next order; nothing that grew is wider than the vein it left. Murray's law no longer holds where drawn and grown veins meet. O(nodes +
  * edges). */
 void network_keep_drawn(Network *net, const WidthDef *def, const Network *drawn, const uint32_t *given);
+
+/* The ranks alone, by the widths as they are. */
+void network_assign_ranks(Network *net, const WidthDef *def);
 
 #endif
