@@ -28,7 +28,10 @@ static gboolean choose_name(Run *run)
     run->name = run->args->name ? g_strdup(run->args->name) : g_strdup(base);
     g_free(base);
     if (!is_name(run->name)) {
-        cli_usage(run->verb, "%s: no name for files; give one with --name", run->name);
+        if (run->args->name)
+            cli_usage(run->verb, "--name %s: must be what file names can begin with: not empty, no '/', no '.' in front", run->name);
+        else
+            cli_usage(run->verb, "%s: no name for files; give one with --name", run->name);
         return FALSE;
     }
     run->dir = run->args->dir ? g_strdup(run->args->dir) : g_build_filename("out", run->name, NULL);

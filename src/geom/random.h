@@ -13,6 +13,7 @@ typedef enum {
     RANDOM_POSE = 64,     /* unevenness of poses */
     RANDOM_LSYSTEM = 80,  /* choice among productions */
     RANDOM_MESH = 100,    /* order in which a mesh's points are inserted */
+    RANDOM_SWEEP = 120,   /* values that a sweep draws; 121: digits of its sequences */
 } RandomStream;
 
 /* Four independent 32-bit words. */

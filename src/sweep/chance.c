@@ -5,7 +5,7 @@
 #include "geom/random.h"
 #include "sweep/private.h"
 
-enum { STREAM_SWEEP = 120, STREAM_SWEEP_DIGITS = 121 }; /* beside geom/random.h's */
+enum { STREAM_SWEEP = RANDOM_SWEEP, STREAM_SWEEP_DIGITS = RANDOM_SWEEP + 1 };
 
 static const double ln2 = 0.693147180559945309417;
 

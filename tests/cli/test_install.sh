@@ -1,12 +1,12 @@
 #!/bin/sh
 # Installs the build into a scratch folder and uses it as a stranger would: header, pkg-config file, library, man page, completion.
-# Usage: test_install.sh BUILD SOURCE; emits TAP.
+# Usage: test_install.sh BUILD SOURCE PREFIX; emits TAP.
 set -eu
 build=$1 source=$2
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 DESTDIR=$root meson install -C "$build" --no-rebuild --quiet
-prefix=$root/usr/local
+prefix=$root$3
 number=0
 check() { # NAME COMMAND…
     number=$((number + 1))
