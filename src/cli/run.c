@@ -43,7 +43,7 @@ static gboolean choose_name(Run *run)
 gboolean run_read_args(Run *run, const Verb *verb, const RunArgs *a)
 {
     char **operands = a->common.operands;
-    *run = (Run){.verb = verb, .args = a, .seed = 1};
+    *run = (Run){.verb = verb, .args = a, .seed = 1, .begun = g_get_monotonic_time()};
     if (!operands || operands[1]) {
         cli_usage(verb, operands ? "%s: one file at a time" : "%s: a file is missing", verb->name);
         return FALSE;
@@ -187,7 +187,6 @@ static void abandon(gpointer user)
 int run_begin(Run *run)
 {
     GError *error = NULL;
-    run->begun = g_get_monotonic_time();
     run->interrupt = interrupt_new(abandon, run);
     interrupt_hold(run->interrupt); /* until the folder is made */
     run->output = output_new(run->dir, &error);

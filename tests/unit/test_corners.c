@@ -182,7 +182,7 @@ static void test_stars(void)
     for (uint32_t s = 0; s < G_N_ELEMENTS(shapes); s++)
         for (int k = 0; k < 7; k++) {
             Vec2 v[10];
-            uint32_t n = shapes[s].n, at[10];
+            uint32_t n = shapes[s].n, at[10] = {0};
             star(v, n, shapes[s].r, shapes[s].s, 0.13 * k);
             GreyImage *g = draw(v, n, 128);
             GArray *points = sample(v, n, 0.5, at);
