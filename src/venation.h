@@ -7,7 +7,8 @@
  *
  * Result = f(parameters, seed): any thread count, compiler and machine gives the same bytes. There is no global state; handles may be
  * used from any thread, each by one thread at a time. Lengths are in vein segments (one segment is 1); the leaf base is the origin
- * and the tip lies along +y. Functions that can fail return NULL or FALSE and set a GError. */
+ * and the tip lies along +y. Functions that can fail return NULL or FALSE and set a GError.
+ * When memory runs out GLib ends the process, as it does in every program that uses it: by g_error, which a log handler can see before. */
 #ifndef VENATION_H
 #define VENATION_H
 
@@ -47,6 +48,12 @@ VEN_API gboolean ven_params_use_scan(VenParams *params, const char *image, GErro
 /* How many leaves the scan of the parameters holds (scan.leaf counts them); 0 with an error. */
 VEN_API uint32_t ven_scan_leaves(const VenParams *params, GError **error);
 
+/* A scan that several leaves are taken from: read and searched once for all of them. NULL with an error. */
+typedef struct VenScan VenScan;
+VEN_API VenScan *ven_scan_open(const VenParams *params, GError **error);
+VEN_API uint32_t ven_scan_count(const VenScan *sheet);
+VEN_API void ven_scan_close(VenScan *sheet);
+
 /* How many nodes the outline of that scan has by side of the marching square and tolerance of simplification (Hong 2005, tables 5.1 and 5.2),
  * with area and perimeter: text for people; free it with g_free. NULL with an error. */
 VEN_API char *ven_scan_table(const VenParams *params, GError **error);
@@ -71,6 +78,9 @@ typedef struct {
 VEN_API VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *options, GError **error);
 VEN_API void ven_leaf_free(VenLeaf *leaf);
 
+/* The same for one leaf of a sheet: `params` are those that the sheet was read by, with another scan.leaf. */
+VEN_API VenLeaf *ven_scan_grow(VenScan *sheet, const VenParams *params, uint64_t seed, const VenOptions *options, GError **error);
+
 /* Writes what the parameters ask for (maps, SVG, network) and the run record into the folder `dir`, as `<name>_<map>.png` and so on. */
 VEN_API gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *name, GError **error);
 
@@ -79,8 +89,11 @@ VEN_API gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *nam
 VEN_API gboolean ven_write_frame(const VenLeaf *leaf, const char *dir, const char *name, gboolean maps, GError **error);
 
 /* Of a leaf from a scan, what a person goes on with: <dir>/<name>_drawing.svg with the scan, the outline and the veins as layers, a copy of
- * the scan, and <name>.ini, a parameter file that refers to both. */
+ * the scan, upright and as a PNG where other programs might show it otherwise, and <name>.ini, a parameter file that refers to both. */
 VEN_API gboolean ven_write_capture(const VenLeaf *leaf, const char *dir, const char *name, GError **error);
+
+/* The same of one leaf of a sheet: all share the copy <sheet>_scan, which comes with leaf 1. */
+VEN_API gboolean ven_write_capture_of(const VenLeaf *leaf, const char *dir, const char *name, const char *sheet, GError **error);
 
 /* A leaf from a network that was grown before or drawn: a GraphML file with node positions in segments and the margin, wherever it lies; see
  * the README. `params` give widths where the file has none, the maps, and what is shaped. */
@@ -94,6 +107,9 @@ VEN_API const char *ven_leaf_end(const VenLeaf *leaf, uint64_t *given_up);
 
 /* Of a leaf from a scan: the part of its outline that runs along the edge of the image, where the leaf is cut off; 0 … 1. */
 VEN_API double ven_leaf_cut_off(const VenLeaf *leaf);
+
+/* What else a person should know of such a leaf, a line each; "" when there is nothing. It belongs to the leaf. */
+VEN_API const char *ven_leaf_note(const VenLeaf *leaf);
 
 /* The network. Arrays belong to the leaf. */
 VEN_API uint32_t ven_leaf_nodes(const VenLeaf *leaf);

@@ -29,7 +29,8 @@ static const GOptionEntry options[] = {
 typedef struct {
     Run run;
     const CaptureArgs *args;
-    guint32 leaves; /* of the image; 1 without --each */
+    VenScan *sheet; /* with --each, else NULL */
+    guint32 leaves;  /* of the image; 1 without --each */
 } Capture;
 
 static gboolean set_option(Run *run, const char *option, const char *key, const char *value, GError **error)
@@ -74,7 +75,7 @@ static gboolean capture_leaf(Capture *c, guint32 leaf, GError **error)
     char *number = g_strdup_printf("%u", leaf);
     gboolean ok = !c->args->each || run_set(run, "scan.leaf", number, error);
     ven_leaf_free(run->leaf);
-    run->leaf = ok ? ven_grow(run->params, run->seed, &how, error) : NULL;
+    run->leaf = ok ? ven_scan_grow(c->sheet, run->params, run->seed, &how, error) : NULL;
     g_free(number);
     return run->leaf != NULL;
 }
@@ -86,10 +87,25 @@ static gboolean write_leaves(Run *run, const char *dir, gpointer user, GError **
     gboolean ok = TRUE;
     for (guint32 i = 1; ok && i <= c->leaves; i++) {
         char *name = leaf_name(c, i);
-        ok = (i == 1 || capture_leaf(c, i, error)) && ven_write(run->leaf, dir, name, error) && ven_write_capture(run->leaf, dir, name, error);
+        ok = (i == 1 || capture_leaf(c, i, error)) && ven_write(run->leaf, dir, name, error) &&
+             ven_write_capture_of(run->leaf, dir, name, run->name, error);
         g_free(name);
     }
     return ok;
+}
+
+/* Of all the files written, those that are meant for people. */
+static void say_how_to_go_on(const Capture *c)
+{
+    char *dir = g_filename_display_name(c->run.dir), *first = leaf_name(c, 1), *last = leaf_name(c, c->leaves);
+    gboolean several = c->leaves > 1;
+    fprintf(stderr, "%s/%s_drawing.svg%s%s%s: correct outline and veins with Inkscape, in the layers over the scan\n", dir, first, several ? " … " : "",
+            several ? last : "", several ? "_drawing.svg" : "");
+    fprintf(stderr, "%s/%s.ini%s%s%s: then venation grow, or shape, th%s file%s; both need %s_scan.* beside them, the rest is maps, network and record\n", dir,
+            first, several ? " … " : "", several ? last : "", several ? ".ini" : "", several ? "ese" : "is", several ? "s" : "", c->run.name);
+    g_free(first);
+    g_free(last);
+    g_free(dir);
 }
 
 static void summarise(const Capture *c)
@@ -100,12 +116,8 @@ static void summarise(const Capture *c)
                                : g_strdup("outline captured, without veins");
     run_summarise(&c->run, what);
     g_free(what);
-    char *dir = g_filename_display_name(c->run.dir), *name = leaf_name(c, 1);
     if (!c->run.args->quiet)
-        fprintf(stderr, "%s/%s_drawing.svg: correct outline and veins with Inkscape; then venation grow, or shape, %s/%s.ini\n", dir, name,
-                dir, name);
-    g_free(name);
-    g_free(dir);
+        say_how_to_go_on(c);
 }
 
 static int carry_out(Capture *c)
@@ -116,8 +128,10 @@ static int carry_out(Capture *c)
         return run_report(error, TRUE);
     if (c->args->table)
         return print_table(c);
-    c->leaves = c->args->each ? ven_scan_leaves(run->params, &error) : 1;
-    if (c->leaves == 0 || !capture_leaf(c, 1, &error))
+    if (c->args->each && !(c->sheet = ven_scan_open(run->params, &error)))
+        return run_report(error, TRUE);
+    c->leaves = c->sheet ? ven_scan_count(c->sheet) : 1;
+    if (!capture_leaf(c, 1, &error))
         return run_report(error, TRUE);
     int status = run_begin(run);
     if (status == 0)
@@ -135,6 +149,7 @@ static int run_capture(const Verb *verb, int argc, char **argv)
     if (cli_parse(verb, &args, argc, argv, &status)) {
         Capture c = {.args = &args};
         status = run_read_args(&c.run, verb, &args.run) ? carry_out(&c) : EXIT_USAGE;
+        ven_scan_close(c.sheet);
         run_clear(&c.run);
     }
     cli_clear(verb, &args);
@@ -146,9 +161,12 @@ const Verb capture_verb = {
     "IMAGE",
     "Take outline and veins of a real leaf from a scan",
     "Finds the leaf in a scan (PNG, JPEG or TIFF), traces its outline, cuts off the petiole, and looks for primary and secondary veins; or takes "
-    "veins that were drawn. Written are the maps, with the scan's colours, the network, the record, and what to go on with: NAME_drawing.svg, "
-    "the scan with outline and veins as layers, to be corrected in Inkscape, and NAME.ini, a parameter file from which grow fills in the finer "
-    "veins and shape makes a bent leaf.\n\n"
+    "veins that were drawn. Written are the maps, with the scan's colours, the network, the record, and three files to go on with: NAME_drawing.svg, "
+    "the scan with outline and veins as layers, to be corrected in Inkscape; NAME.ini, a parameter file from which grow fills in the finer "
+    "veins and shape makes a bent leaf; and NAME_scan, the copy of the scan to which both refer.\n\n"
+    "A drawing of your own (--drawing, or outline.file) is an SVG file with the scan as its image, wherever that lies on the page and in whatever units, and the "
+    "veins as open paths in a layer or group called veins, the outline as a path called outline. Without an image its page, if it has the shape of the "
+    "scan, is the scan; else its units are pixels.\n\n"
     "grow and shape take an image, too: they do all at once.",
     options,
     run_capture,

@@ -25,7 +25,7 @@ struct Verb {
     int (*run)(const Verb *verb, int argc, char **argv);
 };
 
-extern const Verb grow_verb, shape_verb, capture_verb, params_verb, help_verb;
+extern const Verb grow_verb, shape_verb, capture_verb, sweep_verb, params_verb, help_verb;
 
 /* All verbs, NULL at the end, and the options that each has (--help). */
 const Verb *const *cli_verbs(void);

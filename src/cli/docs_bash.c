@@ -101,7 +101,7 @@ static const char script[] =
     "    case $1 in\n"
     "    @DIR) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"); return ;;\n"
     "    @FILE) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -f -- \"$cur\"); return ;;\n"
-    "    @PARAMS) _venation_files \"$cur\" ini; return ;;\n"
+    "    @PARAMS|@SWEEP) _venation_files \"$cur\" ini; return ;;\n"
     "    '@PARAMS|IMAGE') _venation_files \"$cur\" ini $_venation_images; return ;;\n"
     "    '@PARAMS|NETWORK|IMAGE') _venation_files \"$cur\" ini graphml $_venation_images; return ;;\n"
     "    @IMAGE) _venation_files \"$cur\" $_venation_images; return ;;\n"

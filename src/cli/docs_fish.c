@@ -25,6 +25,7 @@ static char *candidates(const char *what)
         {"LIST", "(__venation_list $__venation_maps)"},
         {"MODELS", "(__venation_list all none glb obj ply pov)"},
         {"PARAMS", "(__fish_complete_suffix .ini)"},
+        {"SWEEP", "(__fish_complete_suffix .ini)"},
         {"PARAMS|IMAGE", "(__fish_complete_suffix .ini; " IMAGES ")"},
         {"PARAMS|NETWORK|IMAGE", "(__fish_complete_suffix .ini; __fish_complete_suffix .graphml; " IMAGES ")"},
         {"IMAGE", "(" IMAGES ")"},

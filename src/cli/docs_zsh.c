@@ -29,6 +29,7 @@ static void action(GString *s, const char *what)
         {"LIST", "_sequence compadd - $_venation_maps"},
         {"MODELS", "_sequence compadd - all none glb obj ply pov"},
         {"PARAMS", "_files -g \"*.ini(-.)\""},
+        {"SWEEP", "_files -g \"*.ini(-.)\""},
         {"PARAMS|IMAGE", "_files -g \"*.(ini|" IMAGES ")(-.)\""},
         {"PARAMS|NETWORK|IMAGE", "_files -g \"*.(ini|graphml|" IMAGES ")(-.)\""},
         {"IMAGE", "_files -g \"*.(" IMAGES ")(-.)\""},

@@ -10,7 +10,7 @@ typedef enum { POLITE, URGENT, HELD } Mood;
 
 struct Interrupt {
     pthread_t thread;
-    GMutex lock;
+    pthread_mutex_t lock; /* not GMutex, which the thread sanitizer does not see */
     Mood mood;
     int came;
     gboolean quit;
@@ -33,13 +33,13 @@ static void *wait_for_signals(void *user)
         int signal_number;
         if (sigwait(&in->signals, &signal_number) != 0)
             continue;
-        g_mutex_lock(&in->lock);
+        pthread_mutex_lock(&in->lock);
         gboolean quit = in->quit, first = !in->came;
         if (signal_number != SIGURG && first)
             in->came = signal_number;
         if (signal_number != SIGURG && (in->mood == URGENT || (in->mood == POLITE && !first)))
             end(in);
-        g_mutex_unlock(&in->lock);
+        pthread_mutex_unlock(&in->lock);
         if (quit)
             return NULL;
     }
@@ -49,7 +49,7 @@ Interrupt *interrupt_new(InterruptCleanup cleanup, gpointer user)
 {
     static const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
     Interrupt *in = g_new0(Interrupt, 1);
-    g_mutex_init(&in->lock);
+    pthread_mutex_init(&in->lock, NULL);
     in->cleanup = cleanup;
     in->user = user;
     sigemptyset(&in->signals);
@@ -69,43 +69,43 @@ void interrupt_free(Interrupt *in)
 {
     if (!in)
         return;
-    g_mutex_lock(&in->lock);
+    pthread_mutex_lock(&in->lock);
     in->quit = TRUE;
-    g_mutex_unlock(&in->lock);
+    pthread_mutex_unlock(&in->lock);
     pthread_kill(in->thread, SIGURG);
     pthread_join(in->thread, NULL);
     pthread_sigmask(SIG_UNBLOCK, &in->signals, NULL);
-    g_mutex_clear(&in->lock);
+    pthread_mutex_destroy(&in->lock);
     g_free(in);
 }
 
 int interrupt_signal(Interrupt *in)
 {
-    g_mutex_lock(&in->lock);
+    pthread_mutex_lock(&in->lock);
     int came = in->came;
-    g_mutex_unlock(&in->lock);
+    pthread_mutex_unlock(&in->lock);
     return came;
 }
 
 void interrupt_urgent(Interrupt *in)
 {
-    g_mutex_lock(&in->lock);
+    pthread_mutex_lock(&in->lock);
     in->mood = URGENT;
     if (in->came)
         end(in);
-    g_mutex_unlock(&in->lock);
+    pthread_mutex_unlock(&in->lock);
 }
 
 void interrupt_hold(Interrupt *in)
 {
-    g_mutex_lock(&in->lock);
+    pthread_mutex_lock(&in->lock);
     in->mood = HELD;
-    g_mutex_unlock(&in->lock);
+    pthread_mutex_unlock(&in->lock);
 }
 
 void interrupt_polite(Interrupt *in)
 {
-    g_mutex_lock(&in->lock);
+    pthread_mutex_lock(&in->lock);
     in->mood = POLITE;
-    g_mutex_unlock(&in->lock);
+    pthread_mutex_unlock(&in->lock);
 }

@@ -1,19 +1,35 @@
 #include "cli/output.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <glib/gstdio.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 struct Output {
     char *dir, *staging;
+    char *away;      /* room for the name under which the staging folder is removed */
     GPtrArray *made; /* folders that were not there before, outermost first */
     gboolean committed;
     guint files, stale;
     guint64 bytes;
 };
+
+/* Those open, for output_discard_all; what finds no room here is left to the next run if the process ends at once. */
+static _Atomic(Output *) opened[64];
+
+static void note(Output *from, Output *to)
+{
+    for (gsize i = 0; i < G_N_ELEMENTS(opened); i++) {
+        Output *expected = from;
+        if (atomic_compare_exchange_strong(&opened[i], &expected, to))
+            return;
+    }
+}
 
 /* Staging folders are called .venation-HOST-PROCESS-XXXXXX, so that what a killed run left can be told from what a run is writing now, maybe
  * on another machine. */
@@ -40,47 +56,83 @@ static gboolean make_folder(Output *o, const char *path, GError **error)
     g_free(parent);
     if (!good)
         return FALSE;
-    if (g_mkdir(path, 0777) == 0)
-        g_ptr_array_add(o->made, g_strdup(path));
-    else if (errno != EEXIST)
-        return fail(error, "can't make the output folder", path);
+    g_ptr_array_add(o->made, g_strdup(path)); /* before it is there: memory may run out here */
+    if (g_mkdir(path, 0777) != 0) {
+        int code = errno;
+        g_ptr_array_set_size(o->made, (gint)o->made->len - 1);
+        errno = code;
+        if (code != EEXIST)
+            return fail(error, "can't make the output folder", path);
+    }
     if (g_file_test(path, G_FILE_TEST_IS_DIR)) /* made here, or by another run just now */
         return TRUE;
-    errno = ENOTDIR;
+    errno = g_file_test(path, G_FILE_TEST_EXISTS) ? ENOTDIR : ENOENT; /* something else is there, or someone has just removed it */
     return fail(error, "can't make the output folder", path);
 }
 
-static void remove_tree(const char *path)
+/* Removes a file, or a folder with all that is in it. Neither allocates nor locks: it runs in signal handlers and when memory has run out. */
+static void remove_tree(int at, const char *path)
 {
-    GDir *dir = g_dir_open(path, 0, NULL);
+    if (unlinkat(at, path, 0) == 0)
+        return;
+    int folder = openat(at, path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    _Alignas(struct dirent64) char entries[2048];
+    gboolean found;
+    do { /* until nothing is left, as removing may move entries that were not read yet */
+        found = FALSE;
+        lseek(folder, 0, SEEK_SET);
+        for (ssize_t n; (n = getdents64(folder, entries, sizeof entries)) > 0;)
+            for (ssize_t i = 0; i < n;) {
+                const struct dirent64 *entry = (const struct dirent64 *)(const void *)(entries + i);
+                i += entry->d_reclen;
+                if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+                    continue;
+                remove_tree(folder, entry->d_name);
+                found |= faccessat(folder, entry->d_name, F_OK, AT_SYMLINK_NOFOLLOW) != 0;
+            }
+    } while (found);
+    close(folder);
+    unlinkat(at, path, AT_REMOVEDIR);
+}
+
+/* Names of what is in a folder. */
+static GPtrArray *read_folder(const char *path, GError **error)
+{
+    GDir *dir = g_dir_open(path, 0, error);
+    if (!dir)
+        return NULL;
+    GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
     const char *name;
-    while (dir && (name = g_dir_read_name(dir))) {
-        char *child = g_build_filename(path, name, NULL);
-        if (g_unlink(child) != 0)
-            remove_tree(child);
-        g_free(child);
-    }
-    if (dir)
-        g_dir_close(dir);
-    g_rmdir(path);
+    while (errno = 0, (name = g_dir_read_name(dir)))
+        g_ptr_array_add(names, g_strdup(name));
+    int code = errno;
+    g_dir_close(dir);
+    if (code == 0)
+        return names;
+    g_ptr_array_unref(names);
+    errno = code;
+    fail(error, "can't be read", path);
+    return NULL;
 }
 
 /* Removes what runs on this machine left that were killed. */
 static void sweep_dead(const char *path)
 {
     char *begin = g_strdup_printf(".venation-%s-", g_get_host_name());
-    GDir *dir = g_dir_open(path, 0, NULL);
-    const char *name;
-    while (dir && (name = g_dir_read_name(dir))) {
+    GPtrArray *names = read_folder(path, NULL);
+    for (guint i = 0; names && i < names->len; i++) {
+        const char *name = names->pdata[i];
         gint64 process = g_str_has_prefix(name, begin) ? g_ascii_strtoll(name + strlen(begin), NULL, 10) : 0;
         if (process <= 0 || kill((pid_t)process, 0) == 0 || errno != ESRCH)
             continue;
         char *child = g_build_filename(path, name, NULL);
-        remove_tree(child);
+        remove_tree(AT_FDCWD, child);
         g_free(child);
     }
-    if (dir)
-        g_dir_close(dir);
+    if (names)
+        g_ptr_array_unref(names);
     g_free(begin);
 }
 
@@ -88,6 +140,7 @@ Output *output_new(const char *dir, GError **error)
 {
     Output *o = g_new0(Output, 1);
     o->made = g_ptr_array_new_with_free_func(g_free);
+    note(NULL, o);
     o->dir = g_strdup(dir);
     /* "a/" would have "a" as its parent and be made twice */
     for (gsize n = strlen(o->dir); n > 1 && o->dir[n - 1] == '/'; n--)
@@ -96,6 +149,7 @@ Output *output_new(const char *dir, GError **error)
         sweep_dead(o->dir);
         char *name = staging_name();
         o->staging = g_build_filename(o->dir, name, NULL);
+        o->away = g_malloc(strlen(o->staging) + 2);
         g_free(name);
         if (g_mkdtemp(o->staging))
             return o;
@@ -108,16 +162,24 @@ Output *output_new(const char *dir, GError **error)
 
 void output_discard(Output *o)
 {
-    if (o->staging) {
+    if (o->staging && o->away) {
         /* Under another name, so that a writer that is still at work can't add to it. */
-        char *away = g_strconcat(o->staging, "-", NULL);
-        if (g_rename(o->staging, away) == 0)
-            remove_tree(away);
-        remove_tree(o->staging);
-        g_free(away);
+        stpcpy(stpcpy(o->away, o->staging), "-");
+        if (rename(o->staging, o->away) == 0)
+            remove_tree(AT_FDCWD, o->away);
+        remove_tree(AT_FDCWD, o->staging);
     }
     for (guint i = o->made->len; i-- > 0 && !o->committed;)
-        g_rmdir(o->made->pdata[i]); /* fails, as it should, when others have put something there */
+        rmdir(o->made->pdata[i]); /* fails, as it should, when others have put something there */
+}
+
+void output_discard_all(void)
+{
+    for (gsize i = 0; i < G_N_ELEMENTS(opened); i++) {
+        Output *o = atomic_load(&opened[i]);
+        if (o)
+            output_discard(o);
+    }
 }
 
 void output_free(Output *o)
@@ -125,7 +187,9 @@ void output_free(Output *o)
     if (!o)
         return;
     output_discard(o);
+    note(o, NULL);
     g_ptr_array_unref(o->made);
+    g_free(o->away);
     g_free(o->staging);
     g_free(o->dir);
     g_free(o);
@@ -136,24 +200,24 @@ const char *output_staging(const Output *o)
     return o->staging;
 }
 
-/* Paths below `path`, relative to the staging folder: files into `files`, folders into `folders`. */
-static void list_tree(const Output *o, const char *relative, GPtrArray *files, GPtrArray *folders)
+/* Paths below `relative`, relative to the staging folder: files into `files`, folders into `folders`. */
+static gboolean list_tree(const Output *o, const char *relative, GPtrArray *files, GPtrArray *folders, GError **error)
 {
     char *path = g_build_filename(o->staging, relative, NULL);
-    GDir *dir = g_dir_open(path, 0, NULL);
-    const char *name;
-    while (dir && (name = g_dir_read_name(dir))) {
-        char *child = *relative ? g_build_filename(relative, name, NULL) : g_strdup(name);
-        char *full = g_build_filename(o->staging, child, NULL);
+    GPtrArray *names = read_folder(path, error);
+    gboolean good = names != NULL;
+    for (guint i = 0; good && i < names->len; i++) {
+        char *child = *relative ? g_build_filename(relative, names->pdata[i], NULL) : g_strdup(names->pdata[i]);
+        char *full = g_build_filename(path, names->pdata[i], NULL);
         gboolean folder = g_file_test(full, G_FILE_TEST_IS_DIR);
         g_ptr_array_add(folder ? folders : files, child);
-        if (folder)
-            list_tree(o, child, files, folders);
+        good = !folder || list_tree(o, child, files, folders, error);
         g_free(full);
     }
-    if (dir)
-        g_dir_close(dir);
+    if (names)
+        g_ptr_array_unref(names);
     g_free(path);
+    return good;
 }
 
 /* Something of the wrong kind in the way of a file or folder. */
@@ -173,36 +237,32 @@ static gboolean check_way(const Output *o, const GPtrArray *paths, gboolean fold
     return TRUE;
 }
 
-static gboolean move(Output *o, const char *relative, GError **error)
+/* ---- the old files make way, the new ones come in; or all is as before ---- */
+
+typedef struct {
+    char *from, *to, *aside; /* `from` NULL: only what is there goes */
+    guint64 bytes;
+    gboolean record, gone, came;
+} Move;
+
+static void clear_move(gpointer data)
 {
-    char *from = g_build_filename(o->staging, relative, NULL), *to = g_build_filename(o->dir, relative, NULL);
-    GStatBuf info;
-    gboolean good = g_stat(from, &info) == 0 && g_rename(from, to) == 0;
-    if (good) {
-        o->files++;
-        o->bytes += (guint64)info.st_size;
-    } else {
-        fail(error, "can't write", to);
-    }
-    g_free(from);
-    g_free(to);
-    return good;
+    Move *m = data;
+    g_free(m->from);
+    g_free(m->to);
+    g_free(m->aside);
 }
 
-static gboolean move_all(Output *o, const GPtrArray *files, const GPtrArray *folders, GError **error)
+static void add_move(const Output *o, GArray *moves, const char *from, const char *to)
 {
-    for (guint i = 0; i < folders->len; i++) {
-        char *path = g_build_filename(o->dir, folders->pdata[i], NULL);
-        gboolean good = make_folder(o, path, error);
-        g_free(path);
-        if (!good)
-            return FALSE;
-    }
-    for (int records = 0; records < 2; records++)
-        for (guint i = 0; i < files->len; i++)
-            if (g_str_has_suffix(files->pdata[i], ".json") == records && !move(o, files->pdata[i], error))
-                return FALSE;
-    return TRUE;
+    Move m = {.record = from && g_str_has_suffix(to, ".json")};
+    m.from = from ? g_build_filename(o->staging, from, NULL) : NULL;
+    m.to = g_build_filename(o->dir, to, NULL);
+    m.aside = g_strdup_printf("%s/.%u.old", o->staging, moves->len);
+    GStatBuf info;
+    if (m.from && g_stat(m.from, &info) == 0)
+        m.bytes = (guint64)info.st_size;
+    g_array_append_val(moves, m);
 }
 
 /* NAME_000120.svg, NAME_000120_opacity.png */
@@ -211,56 +271,119 @@ static gboolean is_frame(const char *rest)
     return *rest == '_' && strspn(rest + 1, "0123456789") >= 6;
 }
 
-/* Files in a folder of the output that begin with NAME_ or NAME. and are not among `written`: counted; frames among them removed on demand. */
-static guint old_files(const Output *o, const char *folder, const char *name, GHashTable *written, gboolean remove_frames)
+/* Files in a folder of the output that begin with NAME_ or NAME. and are not among `written`: counted; frames among them go, if `moves` is given. */
+static guint old_files(const Output *o, const char *folder, const char *name, GHashTable *written, GArray *moves)
 {
     char *path = g_build_filename(o->dir, folder, NULL);
-    GDir *dir = g_dir_open(path, 0, NULL);
-    const char *entry;
+    GPtrArray *names = read_folder(path, NULL);
     guint n = 0;
-    while (dir && (entry = g_dir_read_name(dir))) {
-        const char *rest = entry + strlen(name);
+    for (guint i = 0; names && i < names->len; i++) {
+        const char *entry = names->pdata[i], *rest = entry + strlen(name);
         if (!g_str_has_prefix(entry, name) || (*rest != '_' && *rest != '.'))
             continue;
         char *relative = *folder ? g_build_filename(folder, entry, NULL) : g_strdup(entry);
         if (!g_hash_table_contains(written, relative)) {
             n++;
-            char *file = g_build_filename(path, entry, NULL);
-            if (remove_frames && is_frame(rest))
-                g_unlink(file);
-            g_free(file);
+            if (moves && is_frame(rest))
+                add_move(o, moves, NULL, relative);
         }
         g_free(relative);
     }
-    if (dir)
-        g_dir_close(dir);
+    if (names)
+        g_ptr_array_unref(names);
     g_free(path);
     return n;
 }
 
-/* After all is in place. */
-static void look_after_old(Output *o, const char *name, const GPtrArray *files, const GPtrArray *folders)
+static GArray *plan_moves(Output *o, const char *name, const GPtrArray *files, const GPtrArray *folders)
 {
+    GArray *moves = g_array_new(FALSE, FALSE, sizeof(Move));
+    g_array_set_clear_func(moves, clear_move);
     GHashTable *written = g_hash_table_new(g_str_hash, g_str_equal);
-    for (guint i = 0; i < files->len; i++)
+    for (guint i = 0; i < files->len; i++) {
         g_hash_table_add(written, files->pdata[i]);
+        add_move(o, moves, files->pdata[i], files->pdata[i]);
+    }
     for (guint i = 0; i < folders->len; i++)
-        old_files(o, folders->pdata[i], name, written, TRUE);
-    o->stale = old_files(o, "", name, written, FALSE);
+        old_files(o, folders->pdata[i], name, written, moves);
+    o->stale = old_files(o, "", name, written, NULL);
     g_hash_table_destroy(written);
+    return moves;
+}
+
+static gboolean make_way(Move *m)
+{
+    m->gone = rename(m->to, m->aside) == 0;
+    return m->gone || errno == ENOENT;
+}
+
+static gboolean come_in(Move *m)
+{
+    m->came = !m->from || rename(m->from, m->to) == 0;
+    return m->came;
+}
+
+/* The old record goes first and the new one comes last: where there is a record, all it tells of is there, wherever a kill strikes. Nothing is
+ * allocated on the way. Returns the move that failed, with errno, or NULL. */
+static Move *carry_out(Move *move, guint n)
+{
+    for (guint i = 0; i < n; i++)
+        if (move[i].record && !make_way(&move[i]))
+            return &move[i];
+    for (guint i = 0; i < n; i++)
+        if (!move[i].record && !(make_way(&move[i]) && come_in(&move[i])))
+            return &move[i];
+    for (guint i = 0; i < n; i++)
+        if (move[i].record && !come_in(&move[i]))
+            return &move[i];
+    return NULL;
+}
+
+static void take_back(Move *move, guint n)
+{
+    for (int records = 1; records >= 0; records--)
+        for (guint i = 0; i < n; i++)
+            if (move[i].record == records && move[i].came && move[i].from)
+                g_rename(move[i].to, move[i].from);
+    for (int records = 0; records < 2; records++)
+        for (guint i = 0; i < n; i++)
+            if (move[i].record == records && move[i].gone)
+                g_rename(move[i].aside, move[i].to);
+}
+
+static gboolean move_all(Output *o, const char *name, const GPtrArray *files, const GPtrArray *folders, GError **error)
+{
+    for (guint i = 0; i < folders->len; i++) {
+        char *path = g_build_filename(o->dir, folders->pdata[i], NULL);
+        gboolean good = make_folder(o, path, error);
+        g_free(path);
+        if (!good)
+            return FALSE;
+    }
+    GArray *moves = plan_moves(o, name, files, folders);
+    Move *move = (Move *)(void *)moves->data, *failed = carry_out(move, moves->len);
+    o->committed = !failed;
+    if (failed) {
+        int code = errno;
+        take_back(move, moves->len);
+        errno = code;
+        fail(error, "can't write", failed->to);
+    }
+    for (guint i = 0; i < moves->len; i++)
+        o->bytes += move[i].bytes;
+    o->files = files->len;
+    g_array_unref(moves);
+    return o->committed;
 }
 
 gboolean output_commit(Output *o, const char *name, GError **error)
 {
     GPtrArray *files = g_ptr_array_new_with_free_func(g_free), *folders = g_ptr_array_new_with_free_func(g_free);
-    list_tree(o, "", files, folders);
-    o->committed =
-        check_way(o, files, FALSE, error) && check_way(o, folders, TRUE, error) && move_all(o, files, folders, error);
-    if (o->committed)
-        look_after_old(o, name, files, folders);
+    gboolean good = list_tree(o, "", files, folders, error) && check_way(o, files, FALSE, error) && check_way(o, folders, TRUE, error) &&
+                    move_all(o, name, files, folders, error);
     g_ptr_array_unref(files);
     g_ptr_array_unref(folders);
-    return o->committed;
+    return good;
 }
 
 guint output_stale(const Output *o)

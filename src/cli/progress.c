@@ -78,18 +78,10 @@ static char *fitting(const Progress *p, const char *text, int room)
     return part;
 }
 
-void progress_update(Progress *p, const VenProgress *now)
+/* A bar of the part that is done, and facts after it; redrawn at most ten times a second. */
+static void draw_bar(Progress *p, double done, const char *facts)
 {
-    gint64 time = g_get_monotonic_time();
-    if (!p || (p->drawn && time - p->drawn < G_USEC_PER_SEC / 10))
-        return;
-    p->drawn = time;
-    double done = CLAMP(now->done, 0, 1);
-    int seconds = (int)((time - p->begun) / G_USEC_PER_SEC);
-    char *facts = g_strdup_printf(" %3d%%  step %u  %u node%s  %u source%s  %d:%02d", (int)(done * 100), now->step, now->nodes,
-                                  cli_s(now->nodes), now->sources, cli_s(now->sources), seconds / 60, seconds % 60);
-    int room = columns() - 1, label = (int)g_utf8_strlen(p->label, -1),
-        bar = MIN(30, room - label - 1 - (int)strlen(facts));
+    int room = columns() - 1, label = (int)g_utf8_strlen(p->label, -1), bar = MIN(30, room - label - 1 - (int)g_utf8_strlen(facts, -1));
     if (bar < 5) {
         char *line = fitting(p, facts, room);
         draw(p, line, (int)g_utf8_strlen(line, -1));
@@ -97,12 +89,37 @@ void progress_update(Progress *p, const VenProgress *now)
     } else {
         GString *s = g_string_new(p->label);
         g_string_append_c(s, ' ');
-        append_bar(s, p, bar, done);
+        append_bar(s, p, bar, CLAMP(done, 0, 1));
         g_string_append(s, facts);
-        draw(p, s->str, label + 1 + bar + (int)strlen(facts));
+        draw(p, s->str, label + 1 + bar + (int)g_utf8_strlen(facts, -1));
         g_string_free(s, TRUE);
     }
+}
+
+static gboolean is_time(Progress *p)
+{
+    gint64 time = g_get_monotonic_time();
+    if (!p || (p->drawn && time - p->drawn < G_USEC_PER_SEC / 10))
+        return FALSE;
+    p->drawn = time;
+    return TRUE;
+}
+
+void progress_update(Progress *p, const VenProgress *now)
+{
+    if (!is_time(p))
+        return;
+    int seconds = (int)((p->drawn - p->begun) / G_USEC_PER_SEC);
+    char *facts = g_strdup_printf(" %3d%%  step %u  %u node%s  %u source%s  %d:%02d", (int)(CLAMP(now->done, 0, 1) * 100), now->step, now->nodes,
+                                  cli_s(now->nodes), now->sources, cli_s(now->sources), seconds / 60, seconds % 60);
+    draw_bar(p, now->done, facts);
     g_free(facts);
+}
+
+void progress_part(Progress *p, double done, const char *facts)
+{
+    if (is_time(p))
+        draw_bar(p, done, facts);
 }
 
 void progress_say(Progress *p, const char *what)

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "lib/fault.h"
+
 enum { MOST_THREADS = 1024 };
 
 /* ---- arguments ---- */
@@ -133,29 +135,9 @@ gboolean run_read_params(Run *run, const char *path, GError **error)
 
 /* ---- errors ---- */
 
-/* A file that ven_grow was told to read (an outline, sources) and that isn't there or is closed to us is bad input. */
-static gboolean is_missing_file(const GError *error)
-{
-    static const GFileError file[] = {G_FILE_ERROR_NOENT, G_FILE_ERROR_ACCES,  G_FILE_ERROR_PERM,
-                                      G_FILE_ERROR_ISDIR, G_FILE_ERROR_NOTDIR, G_FILE_ERROR_NAMETOOLONG,
-                                      G_FILE_ERROR_LOOP};
-    static const GIOErrorEnum io[] = {G_IO_ERROR_NOT_FOUND,         G_IO_ERROR_PERMISSION_DENIED,
-                                      G_IO_ERROR_IS_DIRECTORY,      G_IO_ERROR_NOT_DIRECTORY,
-                                      G_IO_ERROR_FILENAME_TOO_LONG, G_IO_ERROR_TOO_MANY_LINKS};
-    for (gsize i = 0; i < G_N_ELEMENTS(file); i++)
-        if (g_error_matches(error, G_FILE_ERROR, file[i]))
-            return TRUE;
-    for (gsize i = 0; i < G_N_ELEMENTS(io); i++)
-        if (g_error_matches(error, G_IO_ERROR, io[i]))
-            return TRUE;
-    return FALSE;
-}
-
 int run_report(GError *error, gboolean reading)
 {
-    gboolean system = error->domain == G_FILE_ERROR || error->domain == G_IO_ERROR;
-    int status =
-        cli_fail(system && !(reading && is_missing_file(error)) ? EXIT_FAILED : EXIT_BAD_INPUT, "%s", error->message);
+    int status = cli_fail(fault_is_input(error, reading) ? EXIT_BAD_INPUT : EXIT_FAILED, "%s", error->message);
     g_error_free(error);
     return status;
 }
@@ -258,6 +240,8 @@ void run_summarise(const Run *run, const char *what)
             (double)output_bytes(run->output) * 1e-6);
     if (run->leaf && ven_leaf_cut_off(run->leaf) > 0.002)
         fprintf(stderr, "the leaf touches the edge of the image: %.1f %% of its outline is that edge\n", 100.0 * ven_leaf_cut_off(run->leaf));
+    if (run->leaf)
+        fputs(ven_leaf_note(run->leaf), stderr);
     if (output_stale(run->output))
         fprintf(stderr, "%s: %u more files there begin with %s, from other runs\n", dir, output_stale(run->output), run->name);
     g_free(dir);

@@ -87,13 +87,13 @@ static double mean_width(const DrawnVein *v)
 static void put_order(Sink *sink, const DrawingSheet *d, uint32_t order)
 {
     static const char *const name[] = {"unordered", "primary", "secondary", "tertiary", "quaternary"};
-    static const char *const colour[] = {"#868e96", "#c2255c", "#7048e8", "#1c7ed6", "#0ca678"};
+    static const char *const colour[] = {"#fab005", "#c2255c", "#7048e8", "#1c7ed6", "#0ca678"};
     GString *s = sink->text;
     double scale = sqrt(d->to_scan.a * d->to_scan.a + d->to_scan.b * d->to_scan.b);
     bool any = false;
     for (uint32_t k = 0; k < d->veins->n; k++) {
         const DrawnVein *v = &d->veins->vein[k];
-        if (v->order != order)
+        if ((d->order ? d->order[k] : v->order) != order)
             continue;
         if (!any && order < G_N_ELEMENTS(name))
             g_string_append_printf(s, "<g id=\"%s\" inkscape:label=\"%s\"", name[order], name[order]);

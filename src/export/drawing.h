@@ -15,6 +15,7 @@ typedef struct {
     const Polygon *outline; /* leaf coordinates, base 0,0, tip 0,1 */
     const char *curves;     /* SVG path data of the outline in pixels, y down, as curves; or NULL: the polygon */
     const Drawing *veins;   /* leaf coordinates; or NULL */
+    const uint8_t *order;   /* [veins->n] under which each is drawn; or NULL: as it says itself */
     Affine to_scan;         /* leaf coordinates to columns and rows */
 } DrawingSheet;
 

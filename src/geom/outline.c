@@ -57,6 +57,8 @@ static char *user_text(const Maker *m, Vec2 leaf)
     Vec2 axis = vec_sub(m->tip, m->base);
     Vec2 p = vec_add(m->base, vec_add(vec_scale(axis, leaf.y), vec_scale(vec2(axis.y, -axis.x), leaf.x)));
     char x[G_ASCII_DTOSTR_BUF_SIZE], y[G_ASCII_DTOSTR_BUF_SIZE];
+    if (m->def->file && m->def->place)
+        p = affine_apply(&m->def->place->inverse, p);
     g_ascii_formatd(x, sizeof x, "%.6g", p.x);
     g_ascii_formatd(y, sizeof y, "%.6g", (m->def->file ? -p.y : p.y) + 0.0);
     return g_strdup_printf("%s,%s", x, y);
@@ -98,6 +100,17 @@ static bool check_def(const OutlineDef *def, GError **error)
     return check_teeth(def, error);
 }
 
+/* From the drawing's units to those of the image it was drawn over. */
+static void lay_down(SvgShape *shape, const Affine *map)
+{
+    for (guint k = 0; k < 4 * shape->path->curves->len; k++) {
+        Vec2 *p = &g_array_index(shape->path->curves, Curve, k / 4).p[k % 4];
+        *p = affine_apply(map, *p);
+    }
+    shape->base = affine_apply(map, shape->base);
+    shape->tip = affine_apply(map, shape->tip);
+}
+
 /* The shape as drawn, y up, with marks given by hand in place of those of the file. */
 static bool read_shape(Maker *m, GError **error)
 {
@@ -111,6 +124,8 @@ static bool read_shape(Maker *m, GError **error)
         m->shape.tip = vec2(def->tip.x, up * def->tip.y);
     m->shape.has_base |= def->has_base;
     m->shape.has_tip |= def->has_tip;
+    if (def->file && def->place)
+        lay_down(&m->shape, &def->place->map);
     guint n = m->shape.path->subpaths->len;
     if (n == 0)
         return fail_shape(error, "the path is empty: it has no line and no curve");

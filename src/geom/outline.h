@@ -7,6 +7,7 @@
 #include <glib.h>
 
 #include "geom/polygon.h"
+#include "geom/svgplace.h"
 #include "geom/vec.h"
 
 typedef enum {
@@ -28,6 +29,7 @@ typedef struct {
     const char *path;       /* SVG path data, x right and y UP, or NULL */
     const char *file;       /* SVG file (y down), or NULL; exactly one of path and file is set */
     const char *where;      /* names the origin in error messages, e.g. "params/poplar.ini, [outline] path" */
+    const SvgPlace *place;  /* of the file on an image, whose units (geom/svgplace.h) base and tip are returned in; NULL: the file's own */
     bool has_base, has_tip; /* given by hand, in the units of path or file; else by rule, see outline_new */
     Vec2 base, tip;
     bool mirror;            /* path is the right half from base to tip, its last point: reflect it about the axis */
@@ -50,7 +52,7 @@ OutlineDef outline_def_default(void);
  * polygon has the same bits everywhere. O(n log n) expected. */
 Polygon *outline_new(const OutlineDef *def, GError **error);
 
-/* The same; *base and *tip receive where 0,0 and 0,1 were in the units of path or file, y up. */
+/* The same; *base and *tip receive where 0,0 and 0,1 were in the units of path or file, or of the image it was placed on, y up. */
 Polygon *outline_new_from(const OutlineDef *def, Vec2 *base, Vec2 *tip, GError **error);
 
 #endif

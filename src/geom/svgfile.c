@@ -61,7 +61,7 @@ static Rank rank_of(const SvgElement *e)
         return RANK_NONE;
     if (is_called(e, "outline"))
         return !g_strcmp0(e->id, "outline") ? RANK_ID : RANK_LABEL;
-    if (e->defined || is_called(e, "base") || is_called(e, "tip"))
+    if (e->defined || e->hidden || is_called(e, "base") || is_called(e, "tip"))
         return RANK_NONE;
     return g_strv_contains(paths, e->name) ? RANK_PATH : RANK_SHAPE;
 }

@@ -15,8 +15,8 @@ typedef struct {
 
 /* Reads the shape that is called "outline", by its id or its label in Inkscape; else the closed path or polygon of largest
  * area outside of definitions (the first of equals), and without any the largest rectangle, circle or ellipse, which may
- * be a page's background. Also the centres of the circles or ellipses that are called "base" and "tip". viewBox, units
- * and styles are ignored; elements of other namespaces are skipped, and so are labels of groups and layers. False with
+ * be a page's background; hidden ones count only when they are called so. Also the centres of the circles or ellipses that are called "base" and "tip". viewBox, units
+ * and other styles are ignored; elements of other namespaces are skipped, and so are labels of groups and layers. False with
  * OUTLINE_ERROR_READ or _SYNTAX, naming file, line and element. */
 bool svgfile_read(const char *file, SvgShape *out, GError **error);
 void svgshape_clear(SvgShape *shape);

@@ -1,6 +1,7 @@
 #include "geom/svgwalk.h"
 
 #include "geom/svgscan.h"
+#include "geom/svgstyle.h"
 #include "geom/textfile.h"
 
 #include <string.h>
@@ -125,56 +126,108 @@ bool svgelement_centre(const SvgElement *e, Vec2 *centre, GError **error)
 
 /* ---- styles ---- */
 
-/* A property as the style attribute has it (the last one counts), else as the attribute of that name; free it. NULL: not set. */
-static char *property(const char **names, const char **values, const char *name)
-{
-    const char *style = attribute(names, values, "style"), *plain = attribute(names, values, name);
-    char **part = g_strsplit(style ? style : "", ";", -1), *value = NULL;
-    for (guint k = 0; part[k]; k++) {
-        char *colon = strchr(part[k], ':');
-        if (!colon)
-            continue;
-        *colon = '\0';
-        if (strcmp(g_strstrip(part[k]), name))
-            continue;
-        g_free(value);
-        value = g_strdup(g_strstrip(colon + 1));
-        char *important = strchr(value, '!');
-        if (important)
-            *important = '\0';
-        g_strchomp(value);
-    }
-    g_strfreev(part);
-    return value || !plain ? value : g_strstrip(g_strdup(plain));
-}
-
-/* A stroke's width in user units; false for what isn't one, which counts for nothing, as in CSS. */
-static bool read_stroke(const char *text, double *width)
+bool svgwalk_length(const char *text, double whole, double *length)
 {
     static const struct {
         const char *name;
         double size; /* user units: CSS pixels, 96 an inch */
     } unit[] = {{"", 1.0}, {"px", 1.0}, {"pt", 96.0 / 72.0}, {"pc", 16.0}, {"mm", 96.0 / 25.4}, {"cm", 960.0 / 25.4}, {"in", 96.0}};
+    if (!text)
+        return false;
     SvgScan s = {text, text};
     double value;
-    if (!svgscan_number(&s, &value, NULL) || value < 0.0)
+    svgscan_space(&s);
+    if (!svgscan_number(&s, &value, NULL))
         return false;
+    const char *end = s.at + strcspn(s.at, " \t\r\n");
+    gsize n = (gsize)(end - s.at);
+    if (end[strspn(end, " \t\r\n")] != '\0')
+        return false;
+    if (n == 1 && *s.at == '%' && whole > 0.0) {
+        *length = 0.01 * value * whole;
+        return true;
+    }
     for (gsize k = 0; k < G_N_ELEMENTS(unit); k++)
-        if (!strcmp(s.at, unit[k].name)) {
-            *width = value * unit[k].size;
+        if (strlen(unit[k].name) == n && !strncmp(s.at, unit[k].name, n)) {
+            *length = value * unit[k].size;
             return true;
         }
     return false;
 }
 
-static void read_style(SvgElement *e)
+/* What style sheet, style attribute and attribute say of a property; free it. NULL: nothing. */
+static char *property(const SvgStyle *sheet, const SvgElement *e, const char *name)
 {
-    char *display = property(e->names, e->values, "display"), *stroke = property(e->names, e->values, "stroke-width");
-    e->hidden |= display && !strcmp(display, "none");
-    if (stroke)
-        read_stroke(stroke, &e->stroke); /* else it is inherited */
+    return svgstyle_property(sheet, e->name, e->id, attribute(e->names, e->values, "class"), attribute(e->names, e->values, "style"),
+                             attribute(e->names, e->values, name), name);
+}
+
+static void read_style(const SvgStyle *sheet, SvgElement *e)
+{
+    char *display = property(sheet, e, "display"), *visibility = property(sheet, e, "visibility"), *stroke = property(sheet, e, "stroke-width");
+    double width;
+    e->gone |= display && !strcmp(display, "none");
+    if (visibility && (!strcmp(visibility, "visible") || !strcmp(visibility, "hidden") || !strcmp(visibility, "collapse")))
+        e->unseen = strcmp(visibility, "visible") != 0; /* else it is inherited */
+    e->hidden = e->gone || e->unseen;
+    if (svgwalk_length(stroke, 0.0, &width) && width >= 0.0)
+        e->stroke = width; /* else it is inherited */
     g_free(display);
+    g_free(visibility);
     g_free(stroke);
+}
+
+/* ---- places ---- */
+
+const char *svgelement_attribute(const SvgElement *e, const char *name) { return attribute(e->names, e->values, name); }
+
+bool svgwalk_box(const char *text, double box[4])
+{
+    SvgScan s = {text ? text : "", text ? text : ""};
+    for (int k = 0; k < 4; k++) {
+        svgscan_comma(&s);
+        if (!svgscan_number(&s, &box[k], NULL))
+            return false;
+    }
+    svgscan_space(&s);
+    return *s.at == '\0' && box[2] > 0.0 && box[3] > 0.0;
+}
+
+/* xMin, xMid, xMax and their like: the part of the room left over that lies before the picture. */
+static double align(const char *word, const char *axis)
+{
+    const char *at = strstr(word, axis);
+    return at && g_str_has_prefix(at + 1, "Min") ? 0.0 : at && g_str_has_prefix(at + 1, "Max") ? 1.0 : 0.5;
+}
+
+Affine svgwalk_viewport(const double port[4], const double box[4], const char *ratio)
+{
+    double sx = port[2] / box[2], sy = port[3] / box[3], dx = 0.0, dy = 0.0;
+    const char *how = ratio ? ratio : "";
+    if (!strstr(how, "none")) {
+        sx = sy = strstr(how, "slice") ? MAX(sx, sy) : MIN(sx, sy);
+        dx = align(how, "x") * (port[2] - sx * box[2]);
+        dy = align(how, "Y") * (port[3] - sy * box[3]);
+    }
+    return (Affine){.a = sx, .d = sy, .e = port[0] + dx - sx * box[0], .f = port[1] + dy - sy * box[1]};
+}
+
+/* A drawing within the drawing has a place and a scale of its own. */
+static void enter_inner(SvgElement *e)
+{
+    double port[4] = {0.0, 0.0, 0.0, 0.0}, box[4];
+    static const char *const name[] = {"x", "y", "width", "height"};
+    for (int k = 0; k < 4; k++)
+        svgwalk_length(svgelement_attribute(e, name[k]), 0.0, &port[k]);
+    if (!svgwalk_box(svgelement_attribute(e, "viewBox"), box)) {
+        box[0] = box[1] = 0.0;
+        box[2] = port[2] = 1.0;
+        box[3] = port[3] = 1.0;
+    }
+    if (!(port[2] > 0.0 && port[3] > 0.0)) /* as large as what it is in, which is not known */
+        return;
+    Affine own = svgwalk_viewport(port, box, svgelement_attribute(e, "preserveAspectRatio"));
+    e->map = affine_multiply(&e->map, &own);
 }
 
 /* ---- the walk ---- */
@@ -182,6 +235,7 @@ static void read_style(SvgElement *e)
 /* Elements that are open, from the first; they own their strings. */
 typedef struct {
     GPtrArray *open; /* SvgElement */
+    SvgStyle *sheet;
     SvgSeen see;
     void *user;
 } Walk;
@@ -247,7 +301,9 @@ static void start_element(GMarkupParseContext *context, const char *element, con
         }
         e->map = affine_multiply(&e->map, &own);
     }
-    read_style(e);
+    read_style(w->sheet, e);
+    if (e->above && !strcmp(name, "svg"))
+        enter_inner(e);
     w->see(e, w->user, error);
 }
 
@@ -268,6 +324,29 @@ static void name_place(GError **error, const char *file, int line)
         *error = g_error_new(OUTLINE_ERROR, OUTLINE_ERROR_SYNTAX, "%s: not an SVG file: %s", file, what);
     g_free(what);
     g_error_free(cause);
+}
+
+/* Style sheets count for what is drawn before them, too, so they are read first, as far as the file is sound. */
+static void take_sheet(GMarkupParseContext *context, const char *text, gsize length, gpointer user, GError **error)
+{
+    const char *element = g_markup_parse_context_get_element(context);
+    if (!element || strcmp(local_name(element), "style"))
+        return;
+    char *rules = g_strndup(text, length);
+    svgstyle_add(user, rules);
+    g_free(rules);
+}
+
+static SvgStyle *read_sheets(const char *text, gsize length)
+{
+    static const GMarkupParser parser = {.text = take_sheet};
+    SvgStyle *sheet = svgstyle_new();
+    if (!g_strstr_len(text, (gssize)length, "<style") && !g_strstr_len(text, (gssize)length, ":style"))
+        return sheet;
+    GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_TREAT_CDATA_AS_TEXT, sheet, NULL);
+    g_markup_parse_context_parse(context, text, (gssize)length, NULL);
+    g_markup_parse_context_free(context);
+    return sheet;
 }
 
 static bool parse_markup(Walk *w, const char *file, const char *text, gsize length, GError **error)
@@ -294,10 +373,11 @@ bool svgwalk_file(const char *file, SvgSeen see, void *user, GError **error)
     gsize length;
     if (!textfile_read(file, LARGEST_FILE, &text, &length, error))
         return false;
-    Walk w = {g_ptr_array_new_with_free_func(element_free), see, user};
     gsize mark = length >= 3 && !memcmp(text, "\xEF\xBB\xBF", 3) ? 3 : 0; /* byte order mark */
+    Walk w = {g_ptr_array_new_with_free_func(element_free), read_sheets(text + mark, length - mark), see, user};
     bool good = parse_markup(&w, file, text + mark, length - mark, error);
     g_ptr_array_unref(w.open);
+    svgstyle_free(w.sheet);
     g_free(text);
     return good;
 }

@@ -1,5 +1,6 @@
 #include "image/encode.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "geom/dmath.h"
@@ -47,27 +48,84 @@ void encoder_clear(Encoder *e)
     e->srgb = NULL;
 }
 
-static uint32_t to_level(double v, double top)
+enum { BLOCK = 128 }; /* values worked on together, in loops that vector instructions take in */
+
+/* 0 for what is not a number. */
+static inline int32_t to_level(double v, double top)
 {
-    if (!(v > 0.0))
-        return 0;
-    return v >= top ? (uint32_t)top : (uint32_t)(v + 0.5);
+    v = v > 0.0 ? v : 0.0;
+    v = v < top ? v : top;
+    return (int32_t)(v + 0.5);
 }
 
-static void put_level(uint8_t **out, uint32_t v, int depth)
+/* Do n values all have the bits of the first? What surrounds the blade does. */
+static bool all_same(const float *in, uint32_t n)
 {
-    if (depth == 16)
-        *(*out)++ = (uint8_t)(v >> 8);
-    *(*out)++ = (uint8_t)v;
+    uint32_t first, differ = 0;
+    memcpy(&first, in, sizeof first);
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t bits;
+        memcpy(&bits, in + i, sizeof bits);
+        differ |= bits ^ first;
+    }
+    return differ == 0;
+}
+
+static uint8_t *put_levels(const int32_t *restrict level, uint32_t n, int depth, uint8_t *restrict out)
+{
+    if (depth == 8) {
+        for (uint32_t i = 0; i < n; i++)
+            out[i] = (uint8_t)level[i];
+        return out + n;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        uint16_t v = GUINT16_TO_BE((uint16_t)level[i]);
+        memcpy(out + 2 * i, &v, sizeof v);
+    }
+    return out + 2 * n;
 }
 
 static void pack_row(const float *in, uint32_t n, uint8_t *out)
 {
     for (uint32_t i = 0; i < n; i++, out += 3) {
-        uint32_t v = to_level((double)in[i], 16777215.0);
+        uint32_t v = (uint32_t)to_level((double)in[i], 16777215.0);
         out[0] = (uint8_t)(v >> 16);
         out[1] = (uint8_t)(v >> 8);
         out[2] = (uint8_t)v;
+    }
+}
+
+/* A value equal to that of the pixel before has its level. */
+static void colour_row(const Encoder *e, const float *in, uint32_t n, double top, uint8_t *out)
+{
+    enum { PIXELS = BLOCK / 12 * 12 }; /* values of whole pixels of 1, 2, 3 or 4 channels */
+    uint32_t c = e->channels;
+    int32_t level[BLOCK], last[4] = {0};
+    float known[4] = {0.0f};
+    for (uint32_t first = 0; first < n; first += PIXELS) {
+        uint32_t count = MIN(n - first, (uint32_t)PIXELS);
+        for (uint32_t i = 0, k = 0; i < count; i++, k = k + 1 < c ? k + 1 : 0) {
+            float v = in[first + i];
+            if (!(v == known[k])) { /* a fourth channel is opacity, which has no gamma */
+                known[k] = v;
+                last[k] = to_level((c == 4 && k == 3 ? (double)v : srgb_at(e->srgb, (double)v)) * top, top);
+            }
+            level[i] = last[k];
+        }
+        out = put_levels(level, count, e->depth, out);
+    }
+}
+
+static void data_row(const Encoder *e, const float *in, uint32_t n, double low, double gain, double top, uint8_t *out)
+{
+    int32_t level[BLOCK];
+    for (uint32_t first = 0; first < n; first += BLOCK, in += BLOCK) {
+        uint32_t count = MIN(n - first, (uint32_t)BLOCK), known = all_same(in, count) ? 1 : count;
+        for (uint32_t i = 0; i < known; i++)
+            level[i] = to_level(((double)in[i] - low) * gain, top);
+        for (uint32_t i = known; i < count; i++)
+            level[i] = level[0];
+        out = put_levels(level, count, e->depth, out);
     }
 }
 
@@ -75,39 +133,52 @@ void encoder_row(const Encoder *e, const Plane *p, uint32_t y, uint8_t *out)
 {
     uint32_t n = p->width * p->channels;
     const float *in = p->px + (gsize)y * n;
-    double top = e->depth == 16 ? 65535.0 : 255.0;
-    double range = p->high - p->low, gain = range != 0.0 ? top / range : 0.0;
-    if (e->packed) {
+    double top = e->depth == 16 ? 65535.0 : 255.0, range = p->high - p->low;
+    if (e->packed)
         pack_row(in, n, out);
-        return;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        double v = (double)in[i];
-        /* a fourth channel is opacity, which has no gamma */
-        if (p->kind == PLANE_COLOUR)
-            v = (p->channels == 4 && i % 4 == 3 ? v : srgb_at(e->srgb, v)) * top;
-        else if (p->kind == PLANE_DATA)
-            v = (v - p->low) * gain;
-        put_level(&out, to_level(v, top), e->depth);
-    }
+    else if (p->kind == PLANE_COLOUR)
+        colour_row(e, in, n, top, out);
+    else if (p->kind == PLANE_DATA)
+        data_row(e, in, n, p->low, range != 0.0 ? top / range : 0.0, top, out);
+    else
+        data_row(e, in, n, 0.0, 1.0, top, out);
+}
+
+/* a where the condition holds, else b: a mask, as compilers make branches of what else they might take for one. */
+static inline uint32_t choose(bool condition, uint32_t a, uint32_t b)
+{
+    uint32_t mask = -(uint32_t)condition;
+    return (a & mask) | (b & ~mask);
+}
+
+/* Below 2^-14 a half is a multiple of 2^-24, which adding 1/2 rounds to; 65520 and above round to infinity. */
+static inline uint16_t to_half(float value)
+{
+    uint32_t bits, small;
+    memcpy(&bits, &value, sizeof bits);
+    int32_t mag = (int32_t)(bits & 0x7FFFFFFFu);
+    uint32_t usual = (uint32_t)(mag + 0xFFF + (mag >> 13 & 1) - 0x38000000) >> 13;
+    float m;
+    memcpy(&m, &mag, sizeof m);
+    m += 0.5f;
+    memcpy(&small, &m, sizeof small);
+    uint32_t h = choose(mag < 0x38800000, small - 0x3F000000u, usual);
+    h = choose(mag < 0x477FF000, h, choose(mag <= 0x7F800000, 0x7C00u, 0x7E00u));
+    return (uint16_t)(h | (bits >> 16 & 0x8000u));
 }
 
 uint16_t encode_half(float value)
 {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    uint32_t sign = bits >> 16 & 0x8000u, mag = bits & 0x7FFFFFFFu;
-    if (mag >= 0x7F800000u)
-        return (uint16_t)(sign | (mag > 0x7F800000u ? 0x7E00u : 0x7C00u));
-    if (mag >= 0x477FF000u) /* 65520 and above round to infinity */
-        return (uint16_t)(sign | 0x7C00u);
-    if (mag < 0x38800000u) { /* below 2^-14: a multiple of 2^-24, which adding 1/2 rounds to */
-        float m;
-        memcpy(&m, &mag, sizeof m);
-        m += 0.5f;
-        memcpy(&mag, &m, sizeof mag);
-        return (uint16_t)(sign | (mag - 0x3F000000u));
+    return to_half(value);
+}
+
+void encode_halves(const float *restrict in, uint32_t n, uint16_t *restrict out)
+{
+    for (uint32_t first = 0; first < n; first += BLOCK, in += BLOCK, out += BLOCK) {
+        uint32_t count = MIN(n - first, (uint32_t)BLOCK), known = all_same(in, count) ? 1 : count;
+        for (uint32_t i = 0; i < known; i++)
+            out[i] = to_half(in[i]);
+        for (uint32_t i = known; i < count; i++)
+            out[i] = out[0];
     }
-    mag += 0xFFFu + (mag >> 13 & 1u);
-    return (uint16_t)(sign | (mag - 0x38000000u) >> 13);
 }

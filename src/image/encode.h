@@ -22,4 +22,7 @@ void encoder_row(const Encoder *e, const Plane *p, uint32_t y, uint8_t *out);
 /* IEEE binary16, rounded to nearest even; overflow gives infinity. */
 uint16_t encode_half(float value);
 
+/* The same of n values. */
+void encode_halves(const float *in, uint32_t n, uint16_t *out);
+
 #endif

@@ -3,12 +3,20 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "image/deflate.h"
 #include "image/encode.h"
 #include "image/file.h"
 #include "image/staged.h"
 
 enum { CHUNK_ROWS = IMAGE_BAND, BATCH = 64 }; /* rows of a ZIP chunk; chunks compressed at a time */
-enum { ZIP_LEVEL = 2 }; /* a full set of 4096 pixels: 180 MB, at level 4 171 MB, which takes longer */
+enum { GRAIN = 4 };                           /* chunks that a thread compresses in a row */
+
+/* A chunk on its way into the file. */
+typedef struct {
+    uint16_t *raw;   /* its pixels in file precision: row by row, and a row channel by channel */
+    uint8_t *packed; /* the same, compressed */
+    gsize n_raw, n_packed; /* bytes; n_packed is 0 when compression gains nothing */
+} Chunk;
 
 typedef struct {
     ImageFile base;
@@ -23,9 +31,7 @@ typedef struct {
     int code; /* errno of a failed write */
     /* the batch being compressed */
     uint32_t first; /* chunk of the band */
-    exr_encode_pipeline_t pipe[BATCH];
-    uint8_t *pixels[BATCH];
-    exr_result_t result[BATCH];
+    Chunk chunk[BATCH];
 } Writer;
 
 /* Says nothing: the result code tells the caller. The library may hold its lock here, so nothing of it can be asked. */
@@ -167,8 +173,6 @@ static exr_result_t put_header(Writer *w, const Metadata *meta)
     if (r == EXR_ERR_SUCCESS)
         r = exr_initialize_required_attr_simple(w->exr, w->part, (int32_t)p->width, (int32_t)p->height,
                                                 EXR_COMPRESSION_ZIP);
-    if (r == EXR_ERR_SUCCESS)
-        r = exr_set_zip_compression_level(w->exr, w->part, ZIP_LEVEL);
     for (uint32_t c = 0; r == EXR_ERR_SUCCESS && c < p->channels; c++)
         r = exr_add_channel(w->exr, w->part, channel_name(p->channels, c), type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (r == EXR_ERR_SUCCESS)
@@ -176,57 +180,58 @@ static exr_result_t put_header(Writer *w, const Metadata *meta)
     return r == EXR_ERR_SUCCESS ? exr_write_header(w->exr) : r;
 }
 
-/* The rows of a chunk in file precision, interleaved in file order (which is that of the plane reversed). */
-static void fill_pixels(const Writer *w, uint32_t y0, uint32_t rows, uint8_t *out)
+/* Channels stand in the file in the reverse of the plane's order, each channel of a row on its own. `row` has room for a row. */
+static void fill_raw(const Writer *w, uint32_t y0, uint32_t rows, uint16_t *out, uint16_t *row)
 {
     const Plane *p = w->band;
-    uint32_t nc = p->channels, size = w->half ? 2 : 4;
-    const float *in = p->px + (gsize)y0 * p->width * nc;
-    for (gsize i = 0; i < (gsize)rows * p->width; i++, in += nc)
-        for (uint32_t c = 0; c < nc; c++, out += size) {
-            float v = in[nc - 1 - c];
-            if (w->half) {
-                uint16_t h = encode_half(v);
-                memcpy(out, &h, 2);
-            } else {
-                memcpy(out, &v, 4);
-            }
+    uint32_t n = p->width * p->channels, nc = p->channels;
+    for (uint32_t y = y0; y < y0 + rows; y++) {
+        const float *in = p->px + (gsize)y * n;
+        if (!w->half) {
+            for (uint32_t c = nc; c-- > 0;)
+                for (uint32_t x = 0; x < p->width; x++, out += 2)
+                    memcpy(out, in + (gsize)x * nc + c, sizeof(float));
+            continue;
         }
-}
-
-static exr_result_t keep_chunk(exr_encode_pipeline_t *pipe)
-{
-    (void)pipe;
-    return EXR_ERR_SUCCESS;
-}
-
-/* Packs and compresses one chunk; it stays in its pipeline until the batch is written in order. */
-static exr_result_t compress_chunk(Writer *w, uint32_t slot)
-{
-    const Plane *p = w->band;
-    uint32_t y0 = (w->first + slot) * CHUNK_ROWS, size = w->half ? 2 : 4;
-    uint32_t rows = MIN((uint32_t)CHUNK_ROWS, p->height - y0);
-    exr_encode_pipeline_t *pipe = &w->pipe[slot];
-    fill_pixels(w, y0, rows, w->pixels[slot]);
-    for (int c = 0; c < pipe->channel_count; c++) {
-        exr_coding_channel_info_t *ch = &pipe->channels[c];
-        ch->encode_from_ptr = w->pixels[slot] + (uint32_t)c * size;
-        ch->user_pixel_stride = (int32_t)(p->channels * size);
-        ch->user_line_stride = (int32_t)(p->width * p->channels * size);
-        ch->user_bytes_per_element = (int16_t)size;
-        ch->user_data_type = w->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+        encode_halves(in, n, nc > 1 ? row : out);
+        for (uint32_t c = nc; nc > 1 && c-- > 0;)
+            for (uint32_t x = 0; x < p->width; x++)
+                out[(nc - 1 - c) * p->width + x] = row[x * nc + c];
+        out += n;
     }
-    exr_result_t r = exr_encoding_choose_default_routines(w->exr, w->part, pipe);
-    pipe->yield_until_ready_fn = keep_chunk;
-    pipe->write_fn = keep_chunk;
-    return r == EXR_ERR_SUCCESS ? exr_encoding_run(w->exr, w->part, pipe) : r;
 }
 
+/* As OpenEXR's ZIP has it: first all bytes of even places, then those of odd ones, each less the one before it. */
+static void predict(const uint16_t *restrict in, gsize n, uint8_t *restrict out)
+{
+    uint8_t *restrict high = out + n;
+    out[0] = (uint8_t)in[0];
+    high[0] = (uint8_t)((in[0] >> 8) - in[n - 1] + 128);
+    for (gsize i = 1; i < n; i++)
+        out[i] = (uint8_t)(in[i] - in[i - 1] + 128);
+    for (gsize i = 1; i < n; i++)
+        high[i] = (uint8_t)((in[i] >> 8) - (in[i - 1] >> 8) + 128);
+}
+
+/* Compresses the chunks first … last-1 of the batch; they stay there until they are written in order. */
 static void compress_range(uint32_t first, uint32_t last, void *user)
 {
     Writer *w = user;
-    for (uint32_t i = first; i < last; i++)
-        w->result[i] = compress_chunk(w, i);
+    const Plane *p = w->band;
+    Deflate *d = deflate_new();
+    uint8_t *predicted = g_malloc((gsize)p->width * p->channels * CHUNK_ROWS * (w->half ? 2 : 4));
+    uint16_t *row = g_new(uint16_t, (gsize)p->width * p->channels);
+    for (uint32_t i = first; i < last; i++) {
+        Chunk *k = &w->chunk[i];
+        uint32_t y0 = (w->first + i) * CHUNK_ROWS, rows = MIN((uint32_t)CHUNK_ROWS, p->height - y0);
+        k->n_raw = (gsize)rows * p->width * p->channels * (w->half ? 2 : 4);
+        fill_raw(w, y0, rows, k->raw, row);
+        predict(k->raw, k->n_raw / 2, predicted);
+        k->n_packed = deflate_whole(d, predicted, (uint32_t)k->n_raw, k->packed, (uint32_t)k->n_raw - 1);
+    }
+    g_free(predicted);
+    g_free(row);
+    deflate_free(d);
 }
 
 /* Row of the image that chunk i of the batch begins at. */
@@ -237,48 +242,40 @@ static int chunk_row(const Writer *w, uint32_t i)
 
 static exr_result_t put_batch(Writer *w, uint32_t n)
 {
-    exr_result_t r = EXR_ERR_SUCCESS;
-    for (uint32_t i = 0; i < n; i++) {
-        exr_chunk_info_t info;
-        if (r == EXR_ERR_SUCCESS)
-            r = exr_write_scanline_chunk_info(w->exr, w->part, chunk_row(w, i), &info);
-        w->pipe[i] = (exr_encode_pipeline_t)EXR_ENCODE_PIPELINE_INITIALIZER;
-        if (r == EXR_ERR_SUCCESS)
-            r = exr_encoding_initialize(w->exr, w->part, &info, &w->pipe[i]);
-    }
-    if (r == EXR_ERR_SUCCESS && w->pool != NULL)
-        pool_for(w->pool, n, 1, compress_range, w);
-    else if (r == EXR_ERR_SUCCESS)
+    if (w->pool != NULL)
+        pool_for(w->pool, n, GRAIN, compress_range, w);
+    else
         compress_range(0, n, w);
-    for (uint32_t i = 0; i < n; i++) {
-        if (r == EXR_ERR_SUCCESS)
-            r = w->result[i];
-        if (r == EXR_ERR_SUCCESS)
-            r = exr_write_scanline_chunk(w->exr, w->part, chunk_row(w, i), w->pipe[i].compressed_buffer,
-                                         w->pipe[i].compressed_bytes);
-        exr_encoding_destroy(w->exr, &w->pipe[i]);
+    exr_result_t r = EXR_ERR_SUCCESS;
+    for (uint32_t i = 0; i < n && r == EXR_ERR_SUCCESS; i++) {
+        const Chunk *k = &w->chunk[i];
+        r = exr_write_scanline_chunk(w->exr, w->part, chunk_row(w, i), k->n_packed > 0 ? k->packed : (const void *)k->raw,
+                                     k->n_packed > 0 ? k->n_packed : k->n_raw);
     }
     return r;
 }
 
 static exr_result_t put_band(Writer *w)
 {
-    uint32_t chunks = (w->band->height + CHUNK_ROWS - 1) / CHUNK_ROWS;
+    uint32_t chunks = (w->band->height + CHUNK_ROWS - 1) / CHUNK_ROWS, batch = MIN(chunks, (uint32_t)BATCH);
+    gsize most = (gsize)w->band->width * w->band->channels * CHUNK_ROWS * (w->half ? 2 : 4);
     exr_result_t r = EXR_ERR_SUCCESS;
-    for (uint32_t i = 0; i < MIN(chunks, (uint32_t)BATCH); i++)
-        w->pixels[i] = g_malloc((gsize)w->band->width * w->band->channels * CHUNK_ROWS * (w->half ? 2 : 4));
+    for (uint32_t i = 0; i < batch; i++)
+        w->chunk[i] = (Chunk){.raw = g_malloc(most), .packed = g_malloc(most)};
     for (w->first = 0; r == EXR_ERR_SUCCESS && w->first < chunks; w->first += BATCH)
         r = put_batch(w, MIN(chunks - w->first, (uint32_t)BATCH));
-    for (uint32_t i = 0; i < BATCH; i++)
-        g_clear_pointer(&w->pixels[i], g_free);
+    for (uint32_t i = 0; i < batch; i++) {
+        g_free(w->chunk[i].raw);
+        g_free(w->chunk[i].packed);
+    }
     w->row += w->band->height;
     return r;
 }
 
 static gboolean succeeded(const Writer *w, exr_result_t r, GError **error)
 {
-    if (w->code != 0)
-        staged_error(w->file.path, w->code, error);
+    if (w->code != 0 || r == EXR_ERR_OUT_OF_MEMORY)
+        staged_error(w->file.path, w->code != 0 ? w->code : ENOMEM, error);
     else if (r != EXR_ERR_SUCCESS)
         g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_FAILED, "can't write %s: %s", w->file.path, exr_get_error_code_as_string(r));
     return r == EXR_ERR_SUCCESS && w->code == 0;

@@ -71,20 +71,31 @@ double noise_at(const Noise *n, Vec2 p)
     return 1.6 * n->weight * across(&c, x);
 }
 
+/* The first pixel after i, and at most `last`, that lies in another cell than i, which lies in cell ix; x of pixel k is x0 + k step. */
+static uint32_t cell_end(const Noise *n, double x0, double step, uint32_t i, uint32_t ix, uint32_t last)
+{
+    double rest = (ix + 1.0 - (x0 + i * step)) / step, x;
+    uint32_t end = i + 1 + (uint32_t)CLAMP(rest, 0.0, (double)(last - i - 1)); /* but for rounding */
+    while (end > i + 1 && (x = x0 + (end - 1) * step, cell(&x, n->nx) != ix))
+        end--;
+    while (end < last && (x = x0 + end * step, cell(&x, n->nx) == ix))
+        end++;
+    return end;
+}
+
 void noise_row(const Noise *n, Vec2 start, double step, uint32_t first, uint32_t last, float *out)
 {
     if (!(n->weight > 0.0))
         return;
     double x0 = start.x / n->wavelength - (double)n->x0, y = start.y / n->wavelength - (double)n->y0, gain = 1.6 * n->weight;
-    uint32_t iy = cell(&y, n->ny), ix = n->nx;
-    Cut c = {0};
+    uint32_t iy = cell(&y, n->ny);
     step /= n->wavelength;
-    for (uint32_t i = first; i < last; i++) {
+    for (uint32_t i = first, end; i < last; i = end) {
         double x = x0 + i * step;
-        uint32_t at = cell(&x, n->nx);
-        if (at != ix)
-            c = cut_at(n, at, iy, y);
-        ix = at;
-        out[i] = (float)(gain * across(&c, x));
+        uint32_t ix = cell(&x, n->nx);
+        Cut c = cut_at(n, ix, iy, y);
+        end = cell_end(n, x0, step, i, ix, last);
+        for (uint32_t k = i; k < end; k++)
+            out[k] = (float)(gain * across(&c, x0 + k * step - ix));
     }
 }

@@ -29,6 +29,8 @@ static const MapInfo infos[MAP_COUNT] = {
     [MAP_DISTANCE] = {"distance", PLANE_DATA, 1, "segments",
                       "Distance to the nearest vein inside the blade; 0 in veins"},
     [MAP_AGE] = {"age", PLANE_DATA, 1, "steps", "Step at which the vein at the pixel was born; 0 none"},
+    [MAP_AREOLE] = {"areole", PLANE_LABEL, 1, "",
+                    "Number of the areole, a mesh of the net, at the pixel, from 1; 0 where veins cover half of it or more, and where veins don't enclose it"},
 };
 
 const MapInfo *paint_map_info(MapId id)
@@ -156,10 +158,25 @@ static void list_fields(Painter *p, Field *list[N_FIELDS])
         list[N_FIELDS - N_NOISE + i] = &p->grain[i];
 }
 
+static void drop_kept(Painter *p)
+{
+    for (int i = 0; i < MAP_COUNT; i++) {
+        plane_free(p->kept[i]);
+        p->kept[i] = NULL;
+    }
+}
+
+void painter_expect(Painter *p, const gboolean *wanted)
+{
+    for (int i = 0; i < MAP_COUNT; i++)
+        p->expected[i] = wanted[i] != FALSE;
+}
+
 void painter_free(Painter *p)
 {
     if (p == NULL)
         return;
+    drop_kept(p);
     Field *field[N_FIELDS];
     list_fields(p, field);
     for (int i = 0; i < N_FIELDS; i++)
@@ -171,6 +188,7 @@ void painter_free(Painter *p)
     bins_clear(&p->bins);
     bins_clear(&p->ridge_bins);
     bins_clear(&p->edge_bins);
+    areole_map_free(p->areoles);
     nearest_free(p->to_vein);
     nearest_free(p->to_edge);
     pool_free(p->pool);
@@ -184,10 +202,11 @@ void painter_free(Painter *p)
 
 void painter_band(Painter *p, uint32_t y0, uint32_t y1)
 {
-    uint32_t reach = arch_reach(p) + 1; /* normals look one row further */
+    uint32_t reach = arch_reach(p) + 1 + p->surround; /* normals look one row further */
     uint32_t top = (y0 > reach ? y0 - reach : 0) / TILE * TILE;
     uint32_t bottom = MIN((y1 + reach + TILE - 1) / TILE * TILE, p->rows);
     Field *field[N_FIELDS];
+    drop_kept(p);
     list_fields(p, field);
     for (int i = 0; i < N_FIELDS; i++) {
         Field *f = field[i];
@@ -290,6 +309,8 @@ Plane *painter_paint(Painter *p, MapId id)
     case MAP_DISTANCE:
     case MAP_AGE:
         return paint_attribute(p, id);
+    case MAP_AREOLE:
+        return paint_areole(p);
     case MAP_HEIGHT:
     case MAP_NORMAL_GL:
     case MAP_ADAXIAL_NORMAL_GL:

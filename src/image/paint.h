@@ -25,6 +25,7 @@ typedef enum {
     MAP_VEIN_WIDTH,         /* width of the vein at the pixel, segments, 0 none */
     MAP_DISTANCE,           /* distance to the nearest vein's surface inside the blade, segments, 0 in veins */
     MAP_AGE,                /* step of birth of the vein at the pixel; low/high = 0 … steps */
+    MAP_AREOLE,             /* label: 1 + areole at the pixel's centre, 0 in veins and where there is none */
     MAP_COUNT
 } MapId;
 
@@ -74,6 +75,10 @@ void painter_free(Painter *p);
 /* Says which rows of the image, y0 … y1-1, the next planes show; at first they are all. Pixels are the same in any bands. Going down
  * the image band by band computes everything once and needs memory for the rows of a band and a few around it. */
 void painter_band(Painter *p, uint32_t y0, uint32_t y1);
+
+/* Says which maps, MAP_COUNT of them, will be painted of each band, so that those that depend on the same are painted together; what is not
+ * asked for after all costs time alone. */
+void painter_expect(Painter *p, const gboolean *wanted);
 
 /* Paints one map; the shared parts (coverage, nearest vein, distance) are computed once and kept in the painter. */
 Plane *painter_paint(Painter *p, MapId id);

@@ -25,6 +25,8 @@ typedef struct {
     uint32_t done;
 } Field;
 
+typedef struct AreoleMap AreoleMap;
+
 struct Painter {
     const Network *net;
     Frame frame;
@@ -38,6 +40,7 @@ struct Painter {
     double rim;           /* width of the band along the margin, pixels */
     double padding;       /* pixels */
 
+    uint32_t surround;    /* rows that specimens need around the painted ones */
     uint32_t y0, y1;      /* rows that are painted */
     uint32_t top, bottom; /* rows at hand: those and what of their surroundings they depend on; whole rows of tiles */
 
@@ -51,8 +54,12 @@ struct Painter {
     Bins ridge_bins;
     Bins edge_bins;
     Nearest *to_vein, *to_edge;
+    AreoleMap *areoles;
     Noise noise[N_NOISE];
     bool has_noise;
+
+    bool expected[MAP_COUNT]; /* maps that will be asked for, see painter_expect */
+    Plane *kept[MAP_COUNT];   /* painted along with others, not asked for yet */
 
     Field cover;   /* part of the pixel covered by veins within the blade */
     Field blade;   /* part of the pixel covered by the blade */
@@ -101,6 +108,19 @@ void painter_tiles(Painter *p, const Bins *bins, uint32_t from, LoopFn fn, void 
 /* fn(y, user) for every row y0 … y1-1. */
 void painter_rows(const Painter *p, uint32_t y0, uint32_t y1, void (*fn)(uint32_t y, void *user), void *user);
 
+/* v within low … high; low for what is no number. Unlike CLAMP it is two instructions, with no branch. */
+static inline double clamped(double v, double low, double high)
+{
+    v = v > low ? v : low;
+    return v < high ? v : high;
+}
+
+static inline double smoothstep(double t)
+{
+    t = clamped(t, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
 double painter_round_up(double value); /* to two significant digits */
 
 static inline Vec2 painter_to_image(const Painter *p, Vec2 v)
@@ -116,6 +136,10 @@ bool painter_padded(const Painter *p, uint32_t x, uint32_t y, Vec2 *at);
 Plane *paint_attribute(Painter *p, MapId id);
 Plane *paint_surface(Painter *p, MapId id);
 Plane *paint_look(Painter *p, MapId id);
+
+/* Areoles (areole.c). */
+Plane *paint_areole(Painter *p);
+void areole_map_free(AreoleMap *m);
 
 /* A plane for the painted rows of a map, with its kind, unit and range. */
 Plane *painter_plane(const Painter *p, MapId id);

@@ -1,14 +1,18 @@
+/* PNG files: libpng writes the chunks; what goes into the IDAT ones is filtered here and compressed with ISA-L, as libpng knows no other
+ * compressor than zlib, which takes five times as long. */
 #include <errno.h>
 #include <png.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
+#include "image/deflate.h"
 #include "image/encode.h"
 #include "image/file.h"
 #include "image/staged.h"
 
-enum { LONG_TEXT = 1024 }; /* bytes from which a text is compressed */
+enum { LONG_TEXT = 1024 };      /* bytes from which a text is compressed */
+enum { IDAT_BYTES = 1 << 16 };  /* of an IDAT chunk */
+enum { AS_IS = 0, AS_UP = 2 };  /* filters of a row (PNG specification, section 9): none; less the row above */
 
 /* Everything libpng's error jump must leave behind whole. */
 typedef struct {
@@ -20,8 +24,14 @@ typedef struct {
     Encoder encoder;
     GPtrArray *strings; /* keys and values of the text chunks */
     GArray *texts;      /* png_text */
-    uint8_t *row;
-    int code;      /* errno of a failed write */
+    uint32_t row_bytes;
+    uint8_t *row, *above; /* without filter */
+    uint8_t *filtered;    /* IMAGE_BAND rows, each behind its filter's number */
+    uint8_t filter;
+    Deflate *deflate;
+    uint8_t *idat; /* a chunk that is being filled */
+    uint32_t n_idat;
+    int code;      /* errno of a failed write or allocation */
     char *message; /* libpng's, of any other failure */
 } Writer;
 
@@ -37,6 +47,21 @@ static void on_warning(png_structp png, png_const_charp message)
 {
     (void)png;
     (void)message;
+}
+
+static void *on_malloc(png_structp png, png_alloc_size_t n)
+{
+    Writer *w = png_get_mem_ptr(png);
+    void *block = w->memory ? g_malloc(n) : g_try_malloc(n);
+    if (block == NULL)
+        w->code = ENOMEM;
+    return block;
+}
+
+static void on_free(png_structp png, void *block)
+{
+    (void)png;
+    g_free(block);
 }
 
 static void on_write(png_structp png, png_bytep data, png_size_t n)
@@ -117,25 +142,12 @@ static int colour_type(uint32_t channels)
     return type[channels - 1];
 }
 
-/* Measured on full sets of maps of 2048 pixels (poplar, ginkgo, cherry): Paeth's filter with runs and Huffman codes alone gives files as
- * small as deflate's level 3 with the better of two filters (50 MB to 52) in 6/10 of the time; the default, level 6 with all filters,
- * gives 46 MB in 2.7 times the time. Labels repeat in ways that filters hide: they are smallest plain (1.9 MB a vein_id to 2.5). */
-static void set_compression(const Writer *w, const Plane *p)
-{
-    gboolean label = p->kind == PLANE_LABEL;
-    png_set_compression_level(w->png, 1);
-    png_set_compression_strategy(w->png, label ? Z_DEFAULT_STRATEGY : Z_RLE);
-    png_set_filter(w->png, PNG_FILTER_TYPE_BASE, label ? PNG_FILTER_NONE : PNG_FILTER_PAETH);
-    png_set_compression_buffer_size(w->png, 1 << 16);
-}
-
 static gboolean emit_head(Writer *w, const Plane *p, uint32_t height)
 {
     if (setjmp(png_jmpbuf(w->png)))
         return FALSE;
     png_set_write_fn(w->png, w, on_write, on_flush);
     png_set_user_limits(w->png, 0x7FFFFFFF, 0x7FFFFFFF);
-    set_compression(w, p);
     png_set_IHDR(w->png, w->info, p->width, height, w->encoder.depth, colour_type(w->encoder.channels), PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (p->kind == PLANE_COLOUR)
@@ -146,13 +158,56 @@ static gboolean emit_head(Writer *w, const Plane *p, uint32_t height)
     return TRUE;
 }
 
+static void put_idat(Writer *w)
+{
+    png_write_chunk(w->png, (png_const_bytep)"IDAT", w->idat, w->n_idat);
+    w->n_idat = 0;
+}
+
+/* Compresses n bytes; chunks are written as they fill up. */
+static void put_bytes(Writer *w, const uint8_t *bytes, uint32_t n, gboolean last)
+{
+    deflate_give(w->deflate, bytes, n, last);
+    for (;;) {
+        w->n_idat += (uint32_t)deflate_take(w->deflate, w->idat + w->n_idat, IDAT_BYTES - w->n_idat);
+        if (w->n_idat < IDAT_BYTES)
+            return;
+        put_idat(w);
+    }
+}
+
+/* Measured on full sets of maps of 2048 pixels, with ISA-L: what differs from the row above takes as little room as what Paeth's filter leaves,
+ * and vector instructions find it at once; labels repeat in ways that filters hide (bench_paint.c, --compression). */
+static uint8_t choose_filter(const Plane *p)
+{
+    return p->kind == PLANE_LABEL ? AS_IS : AS_UP;
+}
+
+static void filter_row(Writer *w, uint8_t *restrict out)
+{
+    uint8_t *restrict row = w->row, *restrict above = w->above;
+    uint32_t n = w->row_bytes;
+    *out++ = w->filter;
+    if (w->filter == AS_IS)
+        memcpy(out, row, n);
+    else
+        for (uint32_t i = 0; i < n; i++)
+            out[i] = (uint8_t)(row[i] - above[i]);
+    w->row = above;
+    w->above = row;
+}
+
 static gboolean emit_rows(Writer *w, const Plane *p)
 {
     if (setjmp(png_jmpbuf(w->png)))
         return FALSE;
-    for (uint32_t y = 0; y < p->height; y++) {
-        encoder_row(&w->encoder, p, y, w->row);
-        png_write_row(w->png, w->row);
+    for (uint32_t y = 0; y < p->height; y += IMAGE_BAND) { /* by the same rows whatever the band, so that bytes are the same */
+        uint32_t n = MIN(p->height - y, (uint32_t)IMAGE_BAND), bytes = w->row_bytes + 1;
+        for (uint32_t i = 0; i < n; i++) {
+            encoder_row(&w->encoder, p, y + i, w->row);
+            filter_row(w, w->filtered + (gsize)i * bytes);
+        }
+        put_bytes(w, w->filtered, n * bytes, FALSE);
     }
     return TRUE;
 }
@@ -161,7 +216,10 @@ static gboolean emit_end(Writer *w)
 {
     if (setjmp(png_jmpbuf(w->png)))
         return FALSE;
-    png_write_end(w->png, NULL);
+    put_bytes(w, w->filtered, 0, TRUE);
+    if (w->n_idat > 0)
+        put_idat(w);
+    png_write_chunk(w->png, (png_const_bytep)"IEND", NULL, 0); /* png_write_end misses IDAT chunks of its own */
     return TRUE;
 }
 
@@ -182,8 +240,15 @@ static gboolean begin(Writer *w, const Plane *like, uint32_t height, int depth, 
     w->strings = g_ptr_array_new_with_free_func(g_free);
     w->texts = g_array_new(FALSE, TRUE, sizeof(png_text));
     collect_texts(w, like, meta);
-    w->row = g_malloc((gsize)like->width * w->encoder.channels * (gsize)(w->encoder.depth / 8));
-    w->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, w, on_error, on_warning);
+    w->row_bytes = like->width * w->encoder.channels * (uint32_t)(w->encoder.depth / 8);
+    w->row = g_malloc(w->row_bytes);
+    w->above = g_malloc0(w->row_bytes);
+    w->filtered = g_malloc(IMAGE_BAND * ((gsize)w->row_bytes + 1));
+    w->filter = choose_filter(like);
+    w->idat = g_malloc(IDAT_BYTES);
+    w->deflate = deflate_new();
+    deflate_begin(w->deflate);
+    w->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, w, on_error, on_warning, w, on_malloc, on_free);
     if (w->png != NULL)
         w->info = png_create_info_struct(w->png);
     return w->info != NULL && emit_head(w, like, height);
@@ -196,6 +261,10 @@ static void writer_free(Writer *w)
     g_array_free(w->texts, TRUE);
     g_ptr_array_free(w->strings, TRUE);
     g_free(w->row);
+    g_free(w->above);
+    g_free(w->filtered);
+    g_free(w->idat);
+    deflate_free(w->deflate);
     g_free(w->message);
     g_free(w);
 }

@@ -4,12 +4,6 @@
 #include "image/blur.h"
 #include "image/painter.h"
 
-static double smoothstep(double t)
-{
-    t = CLAMP(t, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 /* Depth of the blade between veins below its veins, segments: it arches towards the sunny side. */
 static double arch_depth(const Painter *p)
 {
@@ -94,63 +88,124 @@ typedef struct {
     double arch, bulge, groove; /* what the parts of a side's surface count, segments */
 } Surface;
 
-/* Parts of a row. */
-typedef struct {
-    const float *blade, *bulge, *arch, *nearness;
-} Row;
+/* Pixels of a row are worked on in stretches, in loops that vector instructions take in. */
+enum { STRETCH = 64 };
 
-static Row row_at(const Painter *p, uint32_t y)
+/* Height of pixels x … x + n - 1 of row y, segments; 0 where there is no blade. */
+static void heights(const Surface *s, uint32_t x, uint32_t y, uint32_t n, double *out)
 {
-    return (Row){field_row(p, &p->blade, y), field_row(p, &p->bulge, y), field_row(p, &p->arch, y), field_row(p, &p->nearness, y)};
+    const Painter *p = s->p;
+    const float *blade = field_row(p, &p->blade, y) + x, *bulge = field_row(p, &p->bulge, y) + x;
+    const float *arch = field_row(p, &p->arch, y) + x, *nearness = field_row(p, &p->nearness, y) + x;
+    double by_bulge = s->bulge, by_arch = s->arch, by_groove = s->groove;
+    for (uint32_t i = 0; i < n; i++) {
+        double near = (double)nearness[i];
+        double h = by_bulge * (double)bulge[i] + by_arch * (double)arch[i] - by_groove * near * (0.5 + 0.5 * near);
+        out[i] = blade[i] > 0.0f ? h : 0.0;
+    }
 }
 
-static double height_at(const Surface *s, const Row *r, uint32_t x)
+/* Is there blade at a pixel? */
+static bool has_blade(const float *blade, uint32_t n)
 {
-    double n = (double)r->nearness[x];
-    return s->bulge * (double)r->bulge[x] + s->arch * (double)r->arch[x] - s->groove * n * (0.5 + 0.5 * n);
+    uint32_t any = 0;
+    for (uint32_t i = 0; i < n; i++)
+        any |= (uint32_t)(blade[i] > 0.0f);
+    return any != 0;
 }
 
 static void height_row(uint32_t y, void *user)
 {
     const Surface *s = user;
-    Row r = row_at(s->p, y);
-    float *out = plane_row(s->p, s->plane, y);
+    const Painter *p = s->p;
+    double h[STRETCH];
     Vec2 at;
-    for (uint32_t x = 0; x < s->p->width; x++) {
-        if (r.blade[x] > 0.0f)
-            out[x] = (float)height_at(s, &r, x);
-        else if (painter_padded(s->p, x, y, &at))
-            out[x] = (float)s->arch;
+    for (uint32_t first = 0; first < p->width; first += STRETCH) {
+        uint32_t n = MIN(p->width - first, (uint32_t)STRETCH);
+        const float *blade = field_row(p, &p->blade, y) + first;
+        float *out = plane_row(p, s->plane, y) + first;
+        heights(s, first, y, n, h);
+        for (uint32_t i = 0; i < n; i++)
+            out[i] = (float)h[i];
+        for (uint32_t i = 0; i < n; i++)
+            if (!(blade[i] > 0.0f) && painter_padded(p, first + i, y, &at))
+                out[i] = (float)s->arch;
     }
 }
 
-/* Slope from pixel a over `at` to b, each left out where it is not of the blade; segments per pixel. */
-static double slope(const Surface *s, const Row *ra, uint32_t xa, const Row *rb, uint32_t xb, double here)
+/* Slope from a over `here` to b, each left out where it is not of the blade; segments per pixel. */
+static inline double slope(double a, double blade_a, double b, double blade_b, double here)
 {
-    bool has_a = ra->blade[xa] > 0.0f, has_b = rb->blade[xb] > 0.0f;
-    double a = has_a ? height_at(s, ra, xa) : here, b = has_b ? height_at(s, rb, xb) : here;
-    return has_a && has_b ? 0.5 * (b - a) : b - a;
+    double to_a = blade_a > 0.0 ? a : here, to_b = blade_b > 0.0 ? b : here, all = MIN(blade_a, blade_b);
+    return (all > 0.0 ? 0.5 : 1.0) * (to_b - to_a);
+}
+
+/* Heights and parts of blade of pixels of a row, widened for the loops. */
+typedef struct {
+    double height[STRETCH + 2], blade[STRETCH + 2];
+} Line;
+
+static void take_line(const Surface *s, uint32_t x, uint32_t y, uint32_t n, double *height, double *blade)
+{
+    const float *in = field_row(s->p, &s->p->blade, y) + x;
+    heights(s, x, y, n, height);
+    for (uint32_t i = 0; i < n; i++)
+        blade[i] = (double)in[i];
+}
+
+/* Of the row itself, with the pixels beside the stretch at 0 and n + 1; the image's last pixel is its own neighbour. */
+static void take_middle(const Surface *s, uint32_t x, uint32_t y, uint32_t n, Line *l)
+{
+    uint32_t x1 = MIN(x + n + 1, s->p->width), from = x > 0 ? 0 : 1;
+    take_line(s, x + from - 1, y, x1 - (x + from - 1), l->height + from, l->blade + from);
+    if (x == 0) {
+        l->height[0] = l->height[1];
+        l->blade[0] = l->blade[1];
+    }
+    if (x + n == s->p->width) {
+        l->height[n + 1] = l->height[n];
+        l->blade[n + 1] = l->blade[n];
+    }
+}
+
+static void normal_stretch(const Surface *s, uint32_t x, uint32_t y, uint32_t n, float *out)
+{
+    const Painter *p = s->p;
+    Line up, mid, down;
+    double nx[STRETCH], ny[STRETCH], nz[STRETCH], scale = p->frame.scale;
+    take_line(s, x, y > 0 ? y - 1 : y, n, up.height, up.blade);
+    take_middle(s, x, y, n, &mid);
+    take_line(s, x, y + 1 < p->rows ? y + 1 : y, n, down.height, down.blade);
+    for (uint32_t i = 0; i < n; i++) {
+        double here = mid.height[i + 1];
+        double dx = slope(mid.height[i], mid.blade[i], mid.height[i + 2], mid.blade[i + 2], here) * scale;
+        double dy = slope(down.height[i], down.blade[i], up.height[i], up.blade[i], here) * scale;
+        double k = 0.5 / sqrt(1.0 + dx * dx + dy * dy);
+        nx[i] = 0.5 - dx * k;
+        ny[i] = 0.5 - dy * k;
+        nz[i] = 0.5 + k;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        if (mid.blade[i + 1] > 0.0) {
+            out[3 * i] = (float)nx[i];
+            out[3 * i + 1] = (float)ny[i];
+            out[3 * i + 2] = (float)nz[i];
+        }
 }
 
 static void normal_row(uint32_t y, void *user)
 {
     const Surface *s = user;
     const Painter *p = s->p;
-    uint32_t w = p->width;
-    Row up = row_at(p, y > 0 ? y - 1 : y), mid = row_at(p, y), down = row_at(p, y + 1 < p->rows ? y + 1 : y);
-    float *n = plane_row(p, s->plane, y);
-    for (uint32_t x = 0; x < w; x++, n += 3) {
-        n[0] = n[1] = 0.5f;
-        n[2] = 1.0f;
-        if (!(mid.blade[x] > 0.0f))
-            continue;
-        double here = height_at(s, &mid, x);
-        double dx = slope(s, &mid, x > 0 ? x - 1 : x, &mid, x + 1 < w ? x + 1 : x, here) * p->frame.scale;
-        double dy = slope(s, &down, x, &up, x, here) * p->frame.scale;
-        double k = 0.5 / sqrt(1.0 + dx * dx + dy * dy);
-        n[0] = (float)(0.5 - dx * k);
-        n[1] = (float)(0.5 - dy * k);
-        n[2] = (float)(0.5 + k);
+    float *out = plane_row(p, s->plane, y);
+    for (uint32_t x = 0; x < p->width; x++) {
+        out[3 * x] = out[3 * x + 1] = 0.5f;
+        out[3 * x + 2] = 1.0f;
+    }
+    for (uint32_t first = 0; first < p->width; first += STRETCH) {
+        uint32_t n = MIN(p->width - first, (uint32_t)STRETCH);
+        if (has_blade(field_row(p, &p->blade, y) + first, n))
+            normal_stretch(s, first, y, n, out + 3 * (gsize)first);
     }
 }
 

@@ -248,8 +248,9 @@ static gboolean check_doubles(const Draft *d, GError **error)
 
 Network *draft_finish(Draft *d, const WidthDef *widths, GError **error)
 {
-    if (d->net->n_nodes == 0 || d->net->n_edges == 0) {
-        draft_fail(d, 0, IMPORT_ERROR_GRAPH, error, "the graph has no %s; a venation has at least two nodes and an edge",
+    bool bare = d->net->n_nodes == 1 && d->net->n_edges == 0 && d->net->margin != NULL; /* a blade without veins, as a scan may give */
+    if (!bare && (d->net->n_nodes == 0 || d->net->n_edges == 0)) {
+        draft_fail(d, 0, IMPORT_ERROR_GRAPH, error, "the graph has no %s; a venation has at least two nodes and an edge, a leaf without veins one node and a margin",
                    d->net->n_nodes == 0 ? "nodes" : "edges");
         return NULL;
     }

@@ -16,8 +16,10 @@ typedef struct {
 typedef struct {
     const char *file;
     double flatness;
+    const Affine *place; /* of the drawing; NULL: it stays as it is */
     GArray *strokes;
     bool has_veins;  /* there is a group of that name */
+    guint drawn;     /* shapes, texts and images in it that can't be taken: closed, hidden or none of lines */
     GError *skipped; /* first fault of a path outside of it */
 } Reader;
 
@@ -141,6 +143,15 @@ static bool is_closed(const SvgPath *path, guint k, const GArray *points, bool a
     return g_array_index(path->subpaths, Subpath, k).closed || (!among_veins && vec_dist(p[0], p[points->len - 1]) <= 1e-9 * size);
 }
 
+/* To where the drawing was placed. */
+static void lay_down(SvgPath *path, const Affine *place)
+{
+    for (guint k = 0; place && k < 4 * path->curves->len; k++) {
+        Vec2 *p = &g_array_index(path->curves, Curve, k / 4).p[k % 4];
+        *p = affine_apply(place, *p);
+    }
+}
+
 /* In a drawing of any size a curve is a curve, but no more than that. */
 static GArray *flatten(const SvgPath *path, guint k, double flatness)
 {
@@ -148,9 +159,12 @@ static GArray *flatten(const SvgPath *path, guint k, double flatness)
     return svgpath_flatten(path, k, MAX(flatness, 1e-5 * (box.x1 - box.x0 + box.y1 - box.y0)));
 }
 
+static double area_scale(const Affine *m) { return fabs(m->a * m->d - m->b * m->c); }
+
 static void take_path(Reader *r, const SvgElement *e, const SvgPath *path)
 {
-    double scale = sqrt(fabs(e->map.a * e->map.d - e->map.b * e->map.c));
+    double scale = sqrt(area_scale(&e->map) * (r->place ? area_scale(r->place) : 1.0));
+    guint before = r->strokes->len;
     for (guint k = 0; k < path->subpaths->len; k++) {
         Stroke s = {.points = flatten(path, k, r->flatness), .width = e->stroke * scale, .nested = nesting(e)};
         if (s.points->len < 2 || is_closed(path, k, s.points, s.nested > 0)) {
@@ -161,6 +175,23 @@ static void take_path(Reader *r, const SvgElement *e, const SvgPath *path)
         s.name = path_name(r, e);
         g_array_append_val(r->strokes, s);
     }
+    r->drawn += nesting(e) > 0 && r->strokes->len == before && path->curves->len > 0;
+}
+
+/* What is no path, in the layer "veins". */
+static bool see_other(Reader *r, const SvgElement *e, GError **error)
+{
+    if (nesting(e) == 0 || e->defined)
+        return true;
+    if (!strcmp(e->name, "use") && !e->hidden) {
+        char *name = path_name(r, e);
+        g_set_error(error, OUTLINE_ERROR, OUTLINE_ERROR_SYNTAX,
+                    "%s among the veins is a clone, which is not read (in Inkscape, Edit > Clone > Unlink Clone makes it a path)", name);
+        g_free(name);
+        return false;
+    }
+    r->drawn += svgelement_is_shape(e) || !strcmp(e->name, "use") || !strcmp(e->name, "text") || !strcmp(e->name, "image");
+    return true;
 }
 
 static bool see_element(const SvgElement *e, void *user, GError **error)
@@ -168,14 +199,17 @@ static bool see_element(const SvgElement *e, void *user, GError **error)
     static const char *const open[] = {"path", "polyline", "line", NULL};
     Reader *r = user;
     r->has_veins |= is_veins(e) && !e->defined;
-    if (!g_strv_contains(open, e->name) || e->defined || e->hidden || is_outline(e) || is_called(e, "base") || is_called(e, "tip"))
+    if (is_outline(e) || is_called(e, "base") || is_called(e, "tip"))
         return true;
+    if (!g_strv_contains(open, e->name) || e->defined || e->hidden)
+        return see_other(r, e, error);
     bool wanted = nesting(e) > 0;
     if (!wanted && r->has_veins)
         return true;
     GError *fault = NULL;
     SvgPath *path = svgelement_path(e, &fault);
     if (path) {
+        lay_down(path, r->place);
         take_path(r, e, path);
         svgpath_free(path);
         return true;
@@ -230,17 +264,22 @@ static Drawing *finish(Reader *r, GError **error)
         return NULL;
     }
     Drawing *d = make_drawing(r);
-    if (d->n > 0)
+    if (d->n > 0 || (r->has_veins && r->drawn == 0))
         return d;
     drawing_free(d);
-    g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH, "%s: no vein: there is no open path %s (closed and hidden ones don't count)", r->file,
-                r->has_veins ? "in the layer or group \"veins\"" : "in it");
+    if (r->has_veins)
+        g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH,
+                    "%s: no vein: nothing in the layer or group \"veins\" is an open path that shows (%u object%s there closed, hidden or no path)", r->file, r->drawn,
+                    r->drawn == 1 ? " is" : "s are");
+    else
+        g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH,
+                    "%s: no vein: there is neither a layer \"veins\" nor an open path that shows (closed and hidden ones don't count)", r->file);
     return NULL;
 }
 
-Drawing *drawing_read_svg(const char *path, double flatness, GError **error)
+Drawing *drawing_read_svg(const char *path, double flatness, const Affine *place, GError **error)
 {
-    Reader r = {.file = path, .flatness = flatness, .strokes = g_array_new(FALSE, FALSE, sizeof(Stroke))};
+    Reader r = {.file = path, .flatness = flatness, .place = place, .strokes = g_array_new(FALSE, FALSE, sizeof(Stroke))};
     g_array_set_clear_func(r.strokes, stroke_clear);
     GError *cause = NULL;
     bool good = svgwalk_file(path, see_element, &r, &cause);

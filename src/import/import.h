@@ -46,7 +46,8 @@ typedef enum {
  * numbers with gaps are closed up. Without a margin Network.margin is NULL: whoever needs one must ask for it.
  *
  * Refused is, besides what is no venation, a leaf shorter than 1e-3 segments, and a node that lies farther outside the margin than 2 % of the
- * leaf's length (or, in small leaves, 10 % up to a segment). Parts that are not connected are allowed.
+ * leaf's length (or, in small leaves, 10 % up to a segment). Parts that are not connected are allowed. A single node
+ * with a margin and no edges is a leaf without veins.
  *
  * Errors in G_FILE_ERROR (the file can't be read) or IMPORT_ERROR name file, line, what was found and what may be. The file is
  * streamed: memory goes with the network, about 50 bytes a node or edge, 70 where names are words and the network must be opened. O(n), or

@@ -1,9 +1,13 @@
 /* What a person goes on with after a capture: a drawing over the scan to correct, and a parameter file that grows and shapes from it. */
+#include <errno.h>
 #include <gio/gio.h>
 #include <string.h>
 
 #include "export/drawing.h"
 #include "export/export.h"
+#include "geom/boxtree.h"
+#include "image/scan_file.h"
+#include "image/staged.h"
 #include "lib/leaf.h"
 #include "lib/writer.h"
 
@@ -33,27 +37,86 @@ gboolean ven_params_use_scan(VenParams *params, const char *image, GError **erro
     return ok;
 }
 
-uint32_t ven_scan_leaves(const VenParams *params, GError **error) { return ground_count_leaves(params->values, error); }
+uint32_t ven_scan_leaves(const VenParams *params, GError **error)
+{
+    VenScan *sheet = ven_scan_open(params, error);
+    uint32_t n = sheet ? ven_scan_count(sheet) : 0;
+    ven_scan_close(sheet);
+    return n;
+}
 
 /* ---- the scan beside the drawing ---- */
 
-/* NAME_scan.jpg: the image is copied, so that the folder is complete in itself and can be moved. */
-static char *copy_name(const Writer *w, const char *image, const char *what)
+/* An image that lies beside the drawing, so that the folder is complete in itself and can be moved. */
+typedef struct {
+    const char *from;
+    char *name; /* SHEET_scan.jpg; NULL: there is none */
+    bool as_is; /* the file's bytes; else upright, as PNG: browsers and Inkscape may not show TIFF, nor turn what a tag wants turned */
+} Beside;
+
+static Beside beside(const char *from, const char *sheet, const char *what, const Scan *scan)
 {
-    const char *dot = strrchr(image, '.');
-    char *end = g_ascii_strdown(dot && strlen(dot) <= 5 && !strchr(dot, '/') ? dot : "", -1);
-    char *name = g_strdup_printf("%s_%s%s", w->name, what, end);
+    if (!scan)
+        return (Beside){0};
+    const char *dot = strrchr(from, '.');
+    char *end = g_ascii_strdown(!scan->as_stored ? ".png" : dot && strlen(dot) <= 5 && !strchr(dot, '/') ? dot : "", -1);
+    Beside b = {from, g_strdup_printf("%s_%s%s", sheet, what, end), scan->as_stored};
     g_free(end);
-    return name;
+    return b;
 }
 
-static gboolean copy(const Writer *w, const char *image, const char *name, GError **error)
+static gboolean cannot_read(const char *path, GError **error)
 {
-    char *path = g_build_filename(w->dir, name, NULL);
-    GFile *from = g_file_new_for_path(image), *to = g_file_new_for_path(path);
-    gboolean ok = g_file_copy(from, to, G_FILE_COPY_OVERWRITE | G_FILE_COPY_TARGET_DEFAULT_PERMS, NULL, NULL, NULL, error);
-    g_object_unref(from);
-    g_object_unref(to);
+    int code = errno ? errno : EIO;
+    g_set_error(error, G_FILE_ERROR, (gint)g_file_error_from_errno(code), "can't read '%s': %s", path, g_strerror(code));
+    return FALSE;
+}
+
+/* Copies what is left of `from`, which was opened as `image`. */
+static gboolean pour(FILE *from, const char *image, Staged *to, GError **error)
+{
+    char part[1 << 14];
+    gsize n;
+    errno = 0;
+    while ((n = fread(part, 1, sizeof part, from)) > 0)
+        if (fwrite(part, 1, n, to->file) != n) {
+            staged_error(to->path, errno ? errno : EIO, error);
+            return FALSE;
+        }
+    return !ferror(from) || cannot_read(image, error);
+}
+
+static gboolean copy_file(const char *image, const char *path, GError **error)
+{
+    FILE *from = fopen(image, "rb");
+    if (!from)
+        return cannot_read(image, error);
+    Staged to;
+    gboolean ok = staged_open(&to, path, error);
+    if (ok && !pour(from, image, &to, error)) {
+        staged_abort(&to);
+        ok = FALSE;
+    }
+    ok = ok && staged_commit(&to, error);
+    fclose(from);
+    return ok;
+}
+
+/* The leaf's own scan has become a texture by now. */
+static gboolean copy_upright(const char *image, const char *path, GError **error)
+{
+    Scan *scan = scan_read(image, 0, error);
+    gboolean ok = scan && image_write_scan(scan, path, error);
+    scan_free(scan);
+    return ok;
+}
+
+static gboolean copy(const Writer *w, const Beside *b, GError **error)
+{
+    if (!b->name)
+        return TRUE;
+    char *path = g_build_filename(w->dir, b->name, NULL);
+    gboolean ok = b->as_is ? copy_file(b->from, path, error) : copy_upright(b->from, path, error);
     g_free(path);
     return ok;
 }
@@ -74,6 +137,45 @@ static char *curves_down(const BezierFit *fit, double height)
     return g_string_free(s, FALSE);
 }
 
+/* The order that a drawn vein without one has in the network, along most of its length; 0 when it has none there. */
+static uint8_t network_order(const DrawnVein *v, const Network *net, const Boxtree *tree, const Vec2 *middle)
+{
+    double votes[256] = {0.0}; /* length by order */
+    unsigned best = 0;
+    for (uint32_t i = 1; i < v->n; i++) {
+        uint32_t edge = UINT32_MAX;
+        double far2 = HUGE_VAL;
+        boxtree_nearest(tree, middle, vec_scale(vec_lerp(v->point[i - 1], v->point[i], 0.5), net->length), NULL, NULL, &edge, &far2);
+        votes[net->order[edge]] += vec_dist(v->point[i - 1], v->point[i]);
+    }
+    for (unsigned k = 1; k < G_N_ELEMENTS(votes); k++)
+        best = votes[k] > votes[best] ? k : best;
+    return (uint8_t)best;
+}
+
+/* Orders of the drawing's veins: their own, else those that the network gave them (a tracing says none); free it. */
+static uint8_t *vein_orders(const Drawing *d, const Network *net)
+{
+    if (!d)
+        return NULL;
+    uint8_t *order = g_new0(uint8_t, d->n + 1);
+    uint32_t *item = g_new(uint32_t, net->n_edges);
+    Vec2 *middle = g_new(Vec2, net->n_edges);
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        item[e] = e;
+        middle[e] = vec_lerp(net->node[net->tail[e]], net->node[net->head[e]], 0.5);
+    }
+    Boxtree tree = {0};
+    if (net->n_edges)
+        boxtree_build(&tree, middle, item, net->n_edges);
+    for (uint32_t k = 0; k < d->n; k++)
+        order[k] = d->vein[k].order || !net->n_edges ? d->vein[k].order : network_order(&d->vein[k], net, &tree, middle);
+    boxtree_clear(&tree);
+    g_free(middle);
+    g_free(item);
+    return order;
+}
+
 static gboolean write_drawing(const Writer *w, const char *image, const char *file, GError **error)
 {
     const Ground *g = w->leaf->ground;
@@ -86,11 +188,13 @@ static gboolean write_drawing(const Writer *w, const char *image, const char *fi
                           .outline = g->outline,
                           .curves = g->fang ? curves_down(g->fang->fit, g->scan->height) : NULL,
                           .veins = g->drawing,
+                          .order = vein_orders(g->drawing, w->leaf->net),
                           .to_scan = g->to_scan};
     char *path = g_build_filename(w->dir, file, NULL);
     gboolean ok = export_drawing_svg(&sheet, path, error);
     g_free(path);
     g_free((gpointer)sheet.curves);
+    g_free((gpointer)sheet.order);
     return ok;
 }
 
@@ -135,20 +239,27 @@ static gboolean write_parameters(const Writer *w, const char *scan, const char *
 
 gboolean ven_write_capture(const VenLeaf *leaf, const char *dir, const char *name, GError **error)
 {
+    return ven_write_capture_of(leaf, dir, name, NULL, error);
+}
+
+gboolean ven_write_capture_of(const VenLeaf *leaf, const char *dir, const char *name, const char *sheet, GError **error)
+{
     const Params *p = leaf->params;
-    if (!leaf->ground || !leaf->ground->scan) {
+    const Ground *g = leaf->ground;
+    if (!g || !g->scan) {
         g_set_error(error, G_IO_ERROR, G_IO_ERROR_INVALID_ARGUMENT, "the leaf does not come from a scan");
         return FALSE;
     }
     Writer w;
     writer_init(&w, leaf, dir, name);
-    const char *image = params_text(p, PARAM_SCAN_FILE), *other = params_text(p, PARAM_SCAN_BACK);
-    char *scan = copy_name(&w, image, "scan"), *back = *other ? copy_name(&w, other, "back") : NULL;
+    bool first = !sheet || params_integer(p, PARAM_SCAN_LEAF) == 1;
+    Beside scan = beside(params_text(p, PARAM_SCAN_FILE), sheet ? sheet : name, "scan", g->scan);
+    Beside back = beside(params_text(p, PARAM_SCAN_BACK), sheet ? sheet : name, "back", g->back);
     char *drawing = g_strconcat(name, "_drawing.svg", NULL);
-    gboolean ok = writer_make_dir(&w, error) && copy(&w, image, scan, error) && (!back || copy(&w, other, back, error)) &&
-                  write_drawing(&w, scan, drawing, error) && write_parameters(&w, scan, back, drawing, error);
-    g_free(scan);
-    g_free(back);
+    gboolean ok = writer_make_dir(&w, error) && (!first || (copy(&w, &scan, error) && copy(&w, &back, error))) &&
+                  write_drawing(&w, scan.name, drawing, error) && write_parameters(&w, scan.name, back.name, drawing, error);
+    g_free(scan.name);
+    g_free(back.name);
     g_free(drawing);
     writer_clear(&w);
     return ok;

@@ -50,7 +50,61 @@ static gboolean blame(const Params *p, ParamId id, GError **error)
     return FALSE;
 }
 
-static gboolean find_profile(Ground *g, const Params *p, GError **error)
+/* ---- sheets ---- */
+
+struct GroundScan {
+    Scan *scan;
+    GPtrArray *profile; /* Profile; NULL for those that were given away */
+    Threshold threshold;
+};
+
+GroundScan *ground_scan_new(const Params *p, GError **error)
+{
+    GroundScan *sheet = g_new0(GroundScan, 1);
+    if (read_scan(p, PARAM_SCAN_FILE, &sheet->scan, error) && sheet->scan) {
+        ProfileDef def = settings_profile(p, sheet->scan->height);
+        def.each = true;
+        def.has_base = def.has_tip = false;
+        sheet->profile = profile_capture(sheet->scan, &def, &sheet->threshold, error);
+        if (sheet->profile)
+            return sheet;
+        blame(p, PARAM_SCAN_FILE, error);
+    } else if (!*params_text(p, PARAM_SCAN_FILE)) {
+        g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "scan.file is not given, so there is no scan to look for leaves in");
+    }
+    ground_scan_free(sheet);
+    return NULL;
+}
+
+uint32_t ground_scan_leaves(const GroundScan *sheet) { return sheet->profile->len; }
+
+void ground_scan_free(GroundScan *sheet)
+{
+    if (!sheet)
+        return;
+    if (sheet->profile)
+        g_ptr_array_unref(sheet->profile); /* what was given away is NULL there */
+    scan_free(sheet->scan);
+    g_free(sheet);
+}
+
+/* The leaf of the parameters, if the sheet still has it as they want it. */
+static bool take_profile(Ground *g, const Params *p, GroundScan *sheet)
+{
+    gint64 which = params_integer(p, PARAM_SCAN_LEAF);
+    uint32_t base, tip;
+    params_list(p, PARAM_SCAN_BASE, &base);
+    params_list(p, PARAM_SCAN_TIP, &tip);
+    if (!sheet || base || tip || which > sheet->profile->len || !sheet->profile->pdata[which - 1])
+        return false;
+    g->profile = g_steal_pointer(&sheet->profile->pdata[which - 1]);
+    g->threshold = sheet->threshold;
+    return true;
+}
+
+/* ---- the outline in the scan ---- */
+
+static gboolean capture_profile(Ground *g, const Params *p, GError **error)
 {
     ProfileDef def = settings_profile(p, g->scan->height);
     uint32_t which = (uint32_t)params_integer(p, PARAM_SCAN_LEAF);
@@ -64,7 +118,12 @@ static gboolean find_profile(Ground *g, const Params *p, GError **error)
         g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT, "%s: scan.leaf is %u, but there %s %u in the image",
                     params_text(p, PARAM_SCAN_FILE), which, all->len == 1 ? "is" : "are", all->len);
     g_ptr_array_unref(all);
-    if (!g->profile)
+    return g->profile != NULL;
+}
+
+static gboolean find_profile(Ground *g, const Params *p, GroundScan *sheet, GError **error)
+{
+    if (!take_profile(g, p, sheet) && !capture_profile(g, p, error))
         return FALSE;
     g->base = g->profile->base;
     g->tip = g->profile->tip;
@@ -82,24 +141,6 @@ static gboolean find_fang(Ground *g, const Params *p, GError **error)
     g->tip = g->fang->contour->v[g->fang->tip];
     g->outline = leaf_outline(g, g->fang->outline);
     return TRUE;
-}
-
-uint32_t ground_count_leaves(const Params *p, GError **error)
-{
-    Scan *scan = NULL;
-    if (!read_scan(p, PARAM_SCAN_FILE, &scan, error))
-        return 0;
-    ProfileDef def = settings_profile(p, scan->height);
-    def.each = true;
-    def.has_base = def.has_tip = false;
-    GPtrArray *all = profile_capture(scan, &def, NULL, error);
-    uint32_t n = all ? all->len : 0;
-    if (!all)
-        blame(p, PARAM_SCAN_FILE, error);
-    else
-        g_ptr_array_unref(all);
-    scan_free(scan);
-    return n;
 }
 
 /* ---- the other side ---- */
@@ -175,19 +216,45 @@ static gboolean read_back(Ground *g, const Params *p, GError **error)
     return TRUE;
 }
 
+/* ---- drawings ---- */
+
+static bool is_svg(const char *file) { return g_str_has_suffix(file, ".svg") || g_str_has_suffix(file, ".SVG"); }
+
+/* What is wrong with a file that can't be placed, its reader will say. */
+static bool place_on_scan(const Ground *g, const Params *p, const char *file, SvgPlace *place)
+{
+    SvgUnder under = {params_text(p, PARAM_SCAN_FILE), g->scan->width, g->scan->height};
+    return svgplace_find(file, &under, place, NULL);
+}
+
+static Polygon *drawn_outline(Ground *g, const Params *p, GError **error)
+{
+    const char *file = params_text(p, PARAM_OUTLINE_FILE);
+    SvgPlace place = {0};
+    bool placed = g->scan && *file && place_on_scan(g, p, file, &place);
+    Polygon *outline = settings_outline(p, placed ? &place : NULL, &g->base, &g->tip, error);
+    svgplace_clear(&place);
+    return outline;
+}
+
 /* ---- veins ---- */
 
 static gboolean read_drawing(Ground *g, const Params *p, GError **error)
 {
     const char *file = params_text(p, PARAM_VEINS_DRAWING);
     double height = g->scan ? g->scan->height : 0.0;
-    bool svg = g_str_has_suffix(file, ".svg") || g_str_has_suffix(file, ".SVG");
+    bool svg = is_svg(file);
+    SvgPlace place = {0};
     if (!svg && !g->scan) {
         g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
                     "%s: a text file of lines is in pixels of a scan, so [veins] drawing needs scan.file too", params_origin(p, PARAM_VEINS_DRAWING));
         return FALSE;
     }
-    g->drawing = svg ? drawing_read_svg(file, 1e-3 * vec_dist(g->base, g->tip), error) : drawing_read_tracing(file, height, error);
+    bool placed = svg && g->scan && place_on_scan(g, p, file, &place);
+    g->drawing = svg ? drawing_read_svg(file, 1e-3 * vec_dist(g->base, g->tip), placed ? &place.map : NULL, error)
+                     : drawing_read_tracing(file, height, error);
+    g->drawing_lies = g_steal_pointer(&place.how);
+    svgplace_clear(&place);
     if (!g->drawing)
         return FALSE;
     Vec2 down = vec2(0.0, svg ? height : 0.0); /* an SVG's rows run down from its upper left corner, where its y is 0 */
@@ -208,10 +275,30 @@ static Polygon *outline_in(const Ground *g, const Scan *scan, const Affine *to_s
     return p;
 }
 
+/* A leaf of a few pixels is an outline, and most often a mistake. */
+static bool is_speck(Ground *g, const Polygon *outline)
+{
+    const Box2 *b = &outline->box;
+    double across = b->x1 - b->x0, down = b->y1 - b->y0;
+    if (MAX(across, down) >= FOUND_SHORTEST)
+        return false;
+    g_string_append_printf(g->note, "the leaf is only %.3g × %.3g pixels: no veins were looked for", across, down);
+    if (g->profile)
+        g_string_append_printf(g->note, " (the largest part that is %s than %g in the %s channel measures %.0f px²; see scan.threshold and scan.channel)",
+                               g->threshold.dark ? "darker" : "lighter", g->threshold.level / (g->scan->depth == 16 ? 257.0 : 1.0),
+                               channel_name(g->threshold.channel), MAX(g->profile->area, 1.0));
+    g_string_append_c(g->note, '\n');
+    return true;
+}
+
 static gboolean find_veins(Ground *g, const Params *p, GError **error)
 {
     FoundDef def = settings_found(p);
     Polygon *outline = outline_in(g, g->scan, &g->to_scan);
+    if (is_speck(g, outline)) {
+        polygon_free(outline);
+        return TRUE;
+    }
     g->drawing = found_veins(g->scan, outline, g->base, g->tip, &def, error);
     polygon_free(outline);
     if (!g->drawing)
@@ -238,12 +325,12 @@ static double along_edge(const Polygon *p, const Scan *scan)
     return edge / whole;
 }
 
-static gboolean find_outline(Ground *g, const Params *p, GError **error)
+static gboolean find_outline(Ground *g, const Params *p, GroundScan *sheet, GError **error)
 {
     bool given = *params_text(p, PARAM_OUTLINE_PATH) || *params_text(p, PARAM_OUTLINE_FILE);
     if (g->scan && !given)
-        return params_choice(p, PARAM_SCAN_METHOD) == 0 ? find_profile(g, p, error) : find_fang(g, p, error);
-    g->outline = settings_outline(p, &g->base, &g->tip, error);
+        return params_choice(p, PARAM_SCAN_METHOD) == 0 ? find_profile(g, p, sheet, error) : find_fang(g, p, error);
+    g->outline = drawn_outline(g, p, error);
     if (g->outline && g->scan) { /* drawn over the scan, whose rows run down from its top */
         g->base.y += g->scan->height;
         g->tip.y += g->scan->height;
@@ -266,9 +353,19 @@ static void make_textures(Ground *g, const Params *p)
     polygon_free(back);
 }
 
-static gboolean find(Ground *g, const Params *p, bool veins, GError **error)
+static gboolean get_scan(Ground *g, const Params *p, const GroundScan *sheet, GError **error)
 {
-    if (!read_scan(p, PARAM_SCAN_FILE, &g->scan, error) || !find_outline(g, p, error))
+    if (!sheet)
+        return read_scan(p, PARAM_SCAN_FILE, &g->scan, error);
+    g->scan = scan_copy(sheet->scan);
+    if (!g->scan)
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE, "%s: no memory for another copy of the image", params_text(p, PARAM_SCAN_FILE));
+    return g->scan != NULL;
+}
+
+static gboolean find(Ground *g, const Params *p, GroundScan *sheet, bool veins, GError **error)
+{
+    if (!get_scan(g, p, sheet, error) || !find_outline(g, p, sheet, error))
         return FALSE;
     if (g->scan)
         g->to_scan = to_pixels(g->base, g->tip, g->scan->height);
@@ -286,6 +383,8 @@ static gboolean find(Ground *g, const Params *p, bool veins, GError **error)
 static void clear(gpointer data)
 {
     Ground *g = data;
+    g_free(g->drawing_lies);
+    g_string_free(g->note, TRUE);
     polygon_free(g->outline);
     drawing_free(g->drawing);
     scan_free(g->scan);
@@ -294,10 +393,13 @@ static void clear(gpointer data)
     fang_profile_free(g->fang);
 }
 
-Ground *ground_new(const Params *p, bool veins, GError **error)
+Ground *ground_new(const Params *p, bool veins, GError **error) { return ground_new_on(NULL, p, veins, error); }
+
+Ground *ground_new_on(GroundScan *sheet, const Params *p, bool veins, GError **error)
 {
     Ground *g = g_atomic_rc_box_new0(Ground);
-    if (find(g, p, veins, error)) {
+    g->note = g_string_new(NULL);
+    if (find(g, p, sheet, veins, error)) {
         make_textures(g, p);
         return g;
     }

@@ -19,17 +19,25 @@ typedef struct {
     Profile *profile;        /* by threshold; NULL when [outline] gave the margin */
     Threshold threshold;
     FangProfile *fang;       /* by edges */
+    char *drawing_lies;      /* how the drawn veins came to lie on it, in words (geom/svgplace.h); or NULL */
+    GString *note;           /* what a person should know of it, a line each */
     double cut_off;          /* part of the outline that runs along the edge of the image, where the leaf goes on */
 } Ground;
 
 /* Counted references, as the frames of a run share it. `veins`: drawn ones are read, others looked for in the scan. NULL with an error that names
  * file or parameter. */
 Ground *ground_new(const Params *p, bool veins, GError **error);
+
+/* A scan of several leaves, read and searched once for all of them. */
+typedef struct GroundScan GroundScan;
+GroundScan *ground_scan_new(const Params *p, GError **error);
+uint32_t ground_scan_leaves(const GroundScan *sheet); /* scan.leaf counts them; at least 1 */
+void ground_scan_free(GroundScan *sheet);
+
+/* The same as ground_new for parameters that differ from the sheet's in scan.leaf alone, but each leaf only once without a new search. */
+Ground *ground_new_on(GroundScan *sheet, const Params *p, bool veins, GError **error);
 Ground *ground_ref(Ground *g);
 void ground_unref(Ground *g);
-
-/* How many leaves the scan holds (scan.leaf counts them); 0 with an error. */
-uint32_t ground_count_leaves(const Params *p, GError **error);
 
 /* Lays the back of a leaf onto its front: the map from leaf coordinates to the back's columns and rows, from its own outline, base and tip,
  * by iterated closest points (Besl & McKay 1992) between the mirrored outlines. */

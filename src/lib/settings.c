@@ -50,9 +50,10 @@ static gboolean waves(const Params *p, OutlineDef *def, GError **error)
     return TRUE;
 }
 
-Polygon *settings_outline(const Params *p, Vec2 *base, Vec2 *tip, GError **error)
+Polygon *settings_outline(const Params *p, const SvgPlace *place, Vec2 *base, Vec2 *tip, GError **error)
 {
     OutlineDef def = outline_def_default();
+    def.place = place;
     const char *path = params_text(p, PARAM_OUTLINE_PATH), *file = params_text(p, PARAM_OUTLINE_FILE);
     if (*path && *file) {
         conflict(error, p, PARAM_OUTLINE_FILE, " and path are both given; a leaf has one margin");

@@ -6,6 +6,7 @@
 
 #include "geom/outline.h"
 #include "image/paint.h"
+#include "image/specimen.h"
 #include "param/params.h"
 #include "scan/fang.h"
 #include "scan/found.h"
@@ -21,8 +22,9 @@ typedef enum {
 #define SETTINGS_ERROR settings_error_quark()
 GQuark settings_error_quark(void);
 
-/* The outline that [outline] asks for, in leaf coordinates; *base and *tip receive where 0,0 and 0,1 were in the units of the path or file, y up. */
-Polygon *settings_outline(const Params *p, Vec2 *base, Vec2 *tip, GError **error);
+/* The outline that [outline] asks for, in leaf coordinates; *base and *tip receive where 0,0 and 0,1 were in the units of the path or file, y up,
+ * or of the image that the file was placed on; `place` may be NULL. */
+Polygon *settings_outline(const Params *p, const SvgPlace *place, Vec2 *base, Vec2 *tip, GError **error);
 
 /* [scan] of an image `height` pixels high. */
 ProfileDef settings_profile(const Params *p, uint32_t height);
@@ -39,6 +41,9 @@ void settings_simulation_clear(SimulationDef *def);
 
 WidthDef settings_widths(const Params *p);
 PaintStyle settings_style(const Params *p, uint64_t seed, unsigned threads);
+
+/* [specimen]; `seed` is that of the run. */
+SpecimenDef settings_specimen(const Params *p, uint64_t seed);
 
 /* Fills wanted[MAP_COUNT] from texture.maps; an unknown name is an error. */
 gboolean settings_maps(const Params *p, gboolean *wanted, GError **error);

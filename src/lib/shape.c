@@ -224,7 +224,7 @@ static Mesh *coarse_mesh(const VenShape *s, double coarser, Skeleton **skeleton)
     SkeletonDef def = settings_skeleton(leaf->params, leaf->length, coarser);
     MeshDef mesh_def = settings_mesh(leaf->params, leaf->length, coarser);
     def.min_length = MIN(def.min_length, 0.7 * full->sequence[0].length);
-    Skeleton *sk = skeleton_new(leaf->net, &def, NULL);
+    Skeleton *sk = skeleton_new(s->midrib ? s->midrib : leaf->net, &def, NULL);
     Mesh *mesh = sk && borrow_names(sk, full) ? mesh_skeleton(sk, &mesh_def, NULL) : NULL;
     *skeleton = mesh ? skeleton_refine(sk, mesh) : NULL;
     skeleton_free(sk);
@@ -283,12 +283,13 @@ static void add_levels(VenShape *s)
 
 /* ---- the way there ---- */
 
-static Skeleton *make_skeleton(const VenLeaf *leaf, GError **error)
+static Skeleton *make_skeleton(const VenShape *s, GError **error)
 {
+    const VenLeaf *leaf = s->leaf;
     SkeletonDef def = settings_skeleton(leaf->params, leaf->length, 1.0);
     Vec2 *point = NULL;
     uint32_t *count = NULL, n;
-    Skeleton *sk = skeleton_new(leaf->net, &def, error);
+    Skeleton *sk = skeleton_new(s->midrib ? s->midrib : leaf->net, &def, error);
     if (sk && !settings_fictitious(leaf->params, leaf->length, &point, &count, &n, error)) {
         skeleton_free(sk);
         sk = NULL;
@@ -325,7 +326,7 @@ static void find_fixed(VenShape *s)
 static gboolean build(VenShape *s, GError **error)
 {
     const VenLeaf *leaf = s->leaf;
-    Skeleton *coarse = make_skeleton(leaf, error);
+    Skeleton *coarse = make_skeleton(s, error);
     if (!coarse)
         return FALSE;
     MeshDef def = settings_mesh(leaf->params, leaf->length, 1.0);
@@ -405,6 +406,7 @@ VenShape *ven_shape(const VenLeaf *leaf, GError **error)
     const Params *p = leaf->params;
     VenShape *s = g_new0(VenShape, 1);
     s->leaf = leaf;
+    s->midrib = leaf->net->n_edges ? NULL : shape_lay_midrib(leaf);
     s->solid = settings_solids(p, leaf->length, 1.0);
     real_petiole(leaf, &s->solid);
     s->unit = leaf_metres(leaf) / leaf->length;
@@ -419,6 +421,7 @@ void ven_shape_free(VenShape *s)
 {
     if (!s)
         return;
+    network_free(s->midrib);
     bent_clear(&s->bent);
     for (uint32_t i = 0; i < s->n_levels; i++)
         level_clear(&s->level[i]);

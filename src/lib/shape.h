@@ -28,6 +28,7 @@ typedef struct {
 
 struct VenShape {
     const VenLeaf *leaf; /* borrowed */
+    Network *midrib;     /* that a leaf without veins is given to bend about; else NULL */
     Skeleton *skeleton;  /* refined: every node is a mesh vertex */
     Mesh *mesh;
     uint32_t n_fixed, *fixed, *fixed_node; /* mesh vertices on veins and the skeleton node at each */
@@ -50,6 +51,9 @@ void bent_clear(Bent *b);
 /* A coarser level (1, 2, …) in that pose. Veins that would take the whole above a quarter of the triangles of the level before are left out,
  * the thinnest first. Its `pose` knows places alone. */
 Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent);
+
+/* A midrib in the middle of a leaf that has no vein, as thin as its thinnest would be; straight where the blade lets it. */
+Network *shape_lay_midrib(const VenLeaf *leaf);
 
 /* uv of a point of the flat blade, v up. */
 Vec2 shape_uv(const VenShape *s, Vec2 rest);

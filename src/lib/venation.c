@@ -185,7 +185,13 @@ static gboolean drawn_network(const Params *p, const Ground *g, double length, N
     def.length = length;
     def.widths = settings_widths(p);
     def.where = params_text(p, g->found ? PARAM_SCAN_FILE : PARAM_VEINS_DRAWING);
-    *net = drawing_network(g->drawing, g->outline, &def, error);
+    GError *cause = NULL;
+    *net = drawing_network(g->drawing, g->outline, &def, &cause);
+    if (cause && g->drawing_lies && g_error_matches(cause, DRAWING_ERROR, DRAWING_ERROR_OUTSIDE))
+        g_set_error(error, cause->domain, cause->code, "%s; the drawing was laid on the scan by %s", cause->message, g->drawing_lies);
+    else if (cause)
+        g_propagate_error(error, g_steal_pointer(&cause));
+    g_clear_error(&cause);
     return *net != NULL;
 }
 
@@ -227,13 +233,41 @@ static VenLeaf *grow_in(const Params *p, Ground *ground, SimulationDef *def, con
     return leaf;
 }
 
+struct VenScan {
+    GroundScan *ground;
+};
+
+VenScan *ven_scan_open(const VenParams *params, GError **error)
+{
+    GroundScan *ground = ground_scan_new(params->values, error);
+    VenScan *sheet = ground ? g_new(VenScan, 1) : NULL;
+    if (sheet)
+        sheet->ground = ground;
+    return sheet;
+}
+
+uint32_t ven_scan_count(const VenScan *sheet) { return ground_scan_leaves(sheet->ground); }
+
+void ven_scan_close(VenScan *sheet)
+{
+    if (!sheet)
+        return;
+    ground_scan_free(sheet->ground);
+    g_free(sheet);
+}
+
 VenLeaf *ven_grow(const VenParams *params, uint64_t seed, const VenOptions *options, GError **error)
+{
+    return ven_scan_grow(NULL, params, seed, options, error);
+}
+
+VenLeaf *ven_scan_grow(VenScan *sheet, const VenParams *params, uint64_t seed, const VenOptions *options, GError **error)
 {
     const Params *p = params->values;
     gboolean maps[MAP_COUNT];
     if (!settings_maps(p, maps, error)) /* before the work, not after it */
         return NULL;
-    Ground *ground = ground_new(p, params_choice(p, PARAM_VEINS_ORIGIN) != ORIGIN_LSYSTEM, error);
+    Ground *ground = ground_new_on(sheet ? sheet->ground : NULL, p, params_choice(p, PARAM_VEINS_ORIGIN) != ORIGIN_LSYSTEM, error);
     SimulationDef def;
     VenLeaf *leaf = NULL;
     if (ground && settings_simulation(p, ground->outline, seed, options ? options->threads : 0, &def, error)) {
@@ -255,7 +289,7 @@ static gboolean give_margin(Network *net, const Params *p, const char *path, GEr
         return FALSE;
     }
     Vec2 base, tip;
-    Polygon *leaf = settings_outline(p, &base, &tip, error);
+    Polygon *leaf = settings_outline(p, NULL, &base, &tip, error);
     if (!leaf)
         return FALSE;
     if (net->length == 0.0)
@@ -290,6 +324,8 @@ const char *ven_leaf_end(const VenLeaf *leaf, uint64_t *given_up)
         *given_up = leaf->counts.given_up;
     return end_reason_text(leaf->counts.end);
 }
+
+const char *ven_leaf_note(const VenLeaf *leaf) { return leaf->ground ? leaf->ground->note->str : ""; }
 
 double ven_leaf_cut_off(const VenLeaf *leaf) { return leaf->ground ? leaf->ground->cut_off : 0.0; }
 

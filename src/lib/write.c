@@ -8,15 +8,18 @@
 /* Maps whose values are read as numbers: 255 levels would be too coarse for them. */
 static gboolean measures(MapId id)
 {
-    return id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
+    return id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE || id == MAP_AREOLE;
 }
 
 /* Maps are painted and written band by band, each band's files side by side. */
-enum { MAX_FILES = 2 * MAP_COUNT + 1, BAND_PIXELS = 1 << 19, BAND_STEP = 32 };
+enum { MAX_FILES = 2 * MAP_COUNT + 2, BAND_PIXELS = 1 << 19, BAND_STEP = 32 };
 
-/* A map, or the plain picture of the veins, that is painted. */
+/* Pages that are no maps: the plain picture of the veins, and the picture of the leaf. */
+enum { PAGE_VEINS = MAP_COUNT, PAGE_SPECIMEN, PAGE_COUNT };
+
+/* A map or picture that is painted. */
 typedef struct {
-    int id; /* MapId; MAP_COUNT is the picture */
+    int id; /* MapId or one of the above */
     const char *name;
     Plane *plane; /* the band at hand */
 } Page;
@@ -31,9 +34,10 @@ typedef struct {
 typedef struct {
     const Writer *writer;
     Painter *painter;
+    Specimen *specimen; /* NULL: not wanted */
     Pool *pool;
     uint32_t height; /* of the image, pixels */
-    Page page[MAP_COUNT + 1];
+    Page page[PAGE_COUNT];
     Sheet sheet[MAX_FILES];
     uint32_t n_pages, n_sheets;
 } Atlas;
@@ -50,11 +54,13 @@ static void lay_out(Atlas *a, const gboolean *wanted, gboolean veins_image)
         if (wanted[i])
             a->page[a->n_pages++] = (Page){i, paint_map_info((MapId)i)->name, NULL};
     if (veins_image)
-        a->page[a->n_pages++] = (Page){MAP_COUNT, "veins", NULL};
+        a->page[a->n_pages++] = (Page){PAGE_VEINS, "veins", NULL};
+    if (a->specimen)
+        a->page[a->n_pages++] = (Page){PAGE_SPECIMEN, "specimen", NULL};
     for (int weight = 3; weight > 0; weight--)
         for (uint32_t i = 0; i < a->n_pages; i++) {
             const Page *p = &a->page[i];
-            int channels = p->id < MAP_COUNT ? (int)paint_map_info((MapId)p->id)->channels : 1;
+            int channels = p->id < MAP_COUNT ? (int)paint_map_info((MapId)p->id)->channels : p->id == PAGE_SPECIMEN ? 3 : 1;
             if (a->writer->exr && p->id < MAP_COUNT && (channels > 1 ? 3 : 2) == weight)
                 add_sheet(a, p, TRUE);
             if ((channels > 1 ? 2 : 1) == weight)
@@ -65,7 +71,7 @@ static void lay_out(Atlas *a, const gboolean *wanted, gboolean veins_image)
 static gboolean open_sheet(const Atlas *a, Sheet *s)
 {
     const Writer *w = a->writer;
-    int id = s->page->id, depth = id == MAP_COUNT ? 8 : measures((MapId)id) ? 16 : w->depth;
+    int id = s->page->id, depth = id >= MAP_COUNT ? 8 : measures((MapId)id) ? 16 : w->depth;
     char *suffix = g_strdup_printf("_%s.%s", s->page->name, s->exr ? "exr" : "png"), *path = writer_path(w, suffix);
     s->file = s->exr ? image_exr_begin(path, s->page->plane, a->height, w->exr == 1, &w->meta, NULL, &s->error)
                      : image_png_begin(path, s->page->plane, a->height, depth, &w->meta, &s->error);
@@ -95,11 +101,18 @@ static gboolean sheets_fine(Atlas *a, GError **error)
     return TRUE;
 }
 
+static Plane *paint_page(Atlas *a, int id)
+{
+    if (id == PAGE_SPECIMEN)
+        return specimen_paint(a->specimen);
+    return id == PAGE_VEINS ? painter_veins(a->painter) : painter_paint(a->painter, (MapId)id);
+}
+
 static gboolean write_band(Atlas *a, uint32_t y0, uint32_t y1, GError **error)
 {
     painter_band(a->painter, y0, y1);
     for (uint32_t i = 0; i < a->n_pages; i++)
-        a->page[i].plane = a->page[i].id < MAP_COUNT ? painter_paint(a->painter, (MapId)a->page[i].id) : painter_veins(a->painter);
+        a->page[i].plane = paint_page(a, a->page[i].id);
     pool_for(a->pool, a->n_sheets, 1, fill_sheets, a);
     for (uint32_t i = 0; i < a->n_pages; i++)
         plane_free(a->page[i].plane);
@@ -119,19 +132,24 @@ static gboolean finish(Atlas *a, gboolean ok, GError **error)
     return ok;
 }
 
-static gboolean write_maps(const Writer *w, const Frame *frame, const gboolean *wanted, gboolean veins_image, GError **error)
+static gboolean write_maps(const Writer *w, const Frame *frame, const gboolean *wanted, gboolean veins_image, gboolean specimen,
+                           GError **error)
 {
     Atlas *a = g_new0(Atlas, 1);
     a->writer = w;
     a->painter = writer_painter(w, frame);
+    painter_expect(a->painter, wanted);
     a->pool = pool_new(w->leaf->threads);
     a->height = frame->height;
+    SpecimenDef def = settings_specimen(w->leaf->params, w->leaf->seed);
+    a->specimen = specimen ? specimen_new(a->painter, &def) : NULL;
     lay_out(a, wanted, veins_image);
     uint32_t rows = MAX(BAND_PIXELS / frame->width / BAND_STEP * BAND_STEP, (uint32_t)BAND_STEP);
     gboolean ok = TRUE;
     for (uint32_t y = 0; ok && y < frame->height; y += rows)
         ok = write_band(a, y, MIN(y + rows, frame->height), error);
     ok = finish(a, ok, error);
+    specimen_free(a->specimen);
     painter_free(a->painter);
     pool_free(a->pool);
     g_free(a);
@@ -178,7 +196,8 @@ Frame leaf_frame(const VenLeaf *leaf, Box2 box)
 gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *name, GError **error)
 {
     const Params *p = leaf->params;
-    gboolean wanted[MAP_COUNT], any = params_switch(p, PARAM_EXPORT_VEINS_IMAGE);
+    gboolean wanted[MAP_COUNT], veins = params_switch(p, PARAM_EXPORT_VEINS_IMAGE), specimen = params_switch(p, PARAM_EXPORT_SPECIMEN);
+    gboolean any = veins || specimen;
     if (!settings_maps(p, wanted, error))
         return FALSE;
     for (int i = 0; i < MAP_COUNT; i++)
@@ -187,7 +206,7 @@ gboolean ven_write(const VenLeaf *leaf, const char *dir, const char *name, GErro
     writer_init(&w, leaf, dir, name);
     Frame frame = leaf_frame(leaf, leaf->net->margin->box);
     gboolean ok = writer_make_dir(&w, error) &&
-                  (!any || write_maps(&w, &frame, wanted, params_switch(p, PARAM_EXPORT_VEINS_IMAGE), error)) &&
+                  (!any || write_maps(&w, &frame, wanted, veins, specimen, error)) &&
                   (!params_switch(p, PARAM_EXPORT_SVG) || write_svg(&w, &frame, error)) &&
                   (!params_switch(p, PARAM_EXPORT_NETWORK) || write_network(&w, error)) && write_record(&w, error);
     writer_clear(&w);
@@ -203,7 +222,7 @@ gboolean ven_write_frame(const VenLeaf *leaf, const char *dir, const char *name,
     writer_init(&w, leaf, folder, frame_name);
     Frame frame = leaf_frame(leaf, leaf->stage); /* one scale for all frames of a run */
     gboolean ok = settings_maps(leaf->params, wanted, error) && writer_make_dir(&w, error) &&
-                  (maps ? write_maps(&w, &frame, wanted, FALSE, error) : write_svg(&w, &frame, error));
+                  (maps ? write_maps(&w, &frame, wanted, FALSE, FALSE, error) : write_svg(&w, &frame, error));
     writer_clear(&w);
     g_free(frame_name);
     g_free(folder);

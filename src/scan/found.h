@@ -14,6 +14,8 @@ typedef struct {
 } FoundDef;
 FoundDef found_def_default(void); /* by size, 2, 0.5 */
 
+enum { FOUND_SHORTEST = 16 }; /* pixels: the longer side of an outline in which veins can be found */
+
 /* Images of the box around the leaf at a working resolution: its longer side is no longer than 1200 working pixels. Working pixel (i, j) is the square
  * of the scan from corner + step (i, -j) to corner + step (i+1, -j-1), y up. All are 0 outside the outline, and strength is along it. */
 typedef struct {
@@ -37,7 +39,7 @@ void found_ridges_free(FoundRidges *r);
  * measured. The midvein first: the cheapest path from base to tip, as far as there is evidence; then, one by one, the paths that leave veins already
  * found and gather most evidence. Long prominent ones from near the base are primaries too. Veins start at the parent. EMPTY drawing (not NULL) when nothing stands out. Memory: about 30 float images of
  * at most 1.9 million pixels, and half as much again at worst, whatever the scan's size. SCAN_ERROR_VALUE for settings that can't be used, SCAN_ERROR_SIZE for
- * an outline shorter than 16 pixels or off the image. */
+ * an outline shorter than FOUND_SHORTEST or off the image. */
 Drawing *found_veins(const Scan *s, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error);
 
 /* How well a drawing agrees with another taken as true: shares of the length of lines within `reach`. */

@@ -214,11 +214,11 @@ bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const 
     Box2 b = outline->box;
     double longer = MAX(b.x1 - b.x0, b.y1 - b.y0);
     *l = (FoundLeaf){.scan = s, .n_planes = s->channels < 3 ? 1 : 3};
-    if (!(longer >= 16.0) || b.x0 >= s->width || b.y0 >= s->height || b.x1 <= 0.0 || b.y1 <= 0.0) {
+    if (!(longer >= FOUND_SHORTEST) || b.x0 >= s->width || b.y0 >= s->height || b.x1 <= 0.0 || b.y1 <= 0.0) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE,
-                    "no veins can be found: the outline reaches from (%g, %g) to (%g, %g) in an image of %u × %u pixels; it must be 16 "
-                    "pixels long at least",
-                    b.x0, b.y0, b.x1, b.y1, s->width, s->height);
+                    "no veins can be found: the outline reaches from %g,%g to %g,%g (x,y from the upper left corner) in an image of %u × %u pixels; it must "
+                    "be %d pixels long at least",
+                    b.x0, s->height - b.y1, b.x1, s->height - b.y0, s->width, s->height, FOUND_SHORTEST);
         return false;
     }
     l->step = MAX(longer / longest_side, CLAMP(longer / shortest_side, least_step, 1.0));

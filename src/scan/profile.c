@@ -142,7 +142,7 @@ static Polygon *trace(Capture *c, bool stalk)
 static double extent(const Polygon *p) { return vec_dist(vec2(p->box.x0, p->box.y0), vec2(p->box.x1, p->box.y1)); }
 
 /* A point given by hand: moved onto the outline when near to it. */
-static bool take_given(const Polygon *p, const char *name, Vec2 given, Vec2 *out, GError **error)
+static bool take_given(const Polygon *p, uint32_t height, const char *name, Vec2 given, Vec2 *out, GError **error)
 {
     *out = polygon_nearest(p, given, NULL);
     double far = vec_dist(*out, given), size = extent(p);
@@ -150,7 +150,8 @@ static bool take_given(const Polygon *p, const char *name, Vec2 given, Vec2 *out
         return true;
     if (!(far <= FAR * size) && !polygon_contains(p, given)) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE,
-                    "%s (%g, %g): lies %.0f pixels outside the leaf, which spans x %.0f … %.0f, y %.0f … %.0f (y up)", name, given.x, given.y, far, p->box.x0, p->box.x1, p->box.y0, p->box.y1);
+                    "scan.%s %g,%g lies %.0f pixels outside the leaf, which spans x %.0f … %.0f, y %.0f … %.0f (pixels from the upper left corner)", name,
+                    given.x, height - given.y, far, p->box.x0, p->box.x1, height - p->box.y1, height - p->box.y0);
         return false;
     }
     *out = given;
@@ -189,16 +190,17 @@ static bool find_ends(Capture *c, const Polygon *whole, const Polygon *blade, GE
     bool ok = true;
     if (c->def->has_base) {
         o->base_from = BASE_GIVEN;
-        ok = take_given(whole, "base", c->def->base, &o->base, error);
+        ok = take_given(whole, c->mask->height, "base", c->def->base, &o->base, error);
     } else {
         find_base(c, &axis);
     }
     if (ok && c->def->has_tip)
-        ok = take_given(whole, "tip", c->def->tip, &o->tip, error);
+        ok = take_given(whole, c->mask->height, "tip", c->def->tip, &o->tip, error);
     else
         o->tip = farthest(blade, o->base);
     if (ok && !(vec_dist2(o->base, o->tip) > 0.0)) {
-        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE, "base and tip are the same point (%g, %g)", o->base.x, o->base.y);
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE, "base and tip are the same point, %g,%g from the upper left corner", o->base.x,
+                    c->mask->height - o->base.y);
         ok = false;
     }
     o->symmetry = axis_symmetry(&axis, o->base, o->tip);

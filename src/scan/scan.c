@@ -20,8 +20,20 @@ Scan *scan_new(uint32_t width, uint32_t height, uint32_t channels, uint32_t dept
     if (!px)
         return NULL;
     Scan *s = g_new0(Scan, 1);
-    *s = (Scan){width, height, channels, depth, 0.0, px};
+    *s = (Scan){.width = width, .height = height, .channels = channels, .depth = depth, .px = px};
     return s;
+}
+
+Scan *scan_copy(const Scan *s)
+{
+    Scan *copy = scan_new(s->width, s->height, s->channels, s->depth);
+    if (!copy)
+        return NULL;
+    void *px = copy->px;
+    memcpy(px, s->px, (gsize)s->width * s->height * s->channels * s->depth / 8);
+    *copy = *s;
+    copy->px = px;
+    return copy;
 }
 
 void scan_free(Scan *s)
@@ -43,6 +55,12 @@ Scan *scan_file_error(const ScanFile *f, ScanError code, GError **error, const c
     return NULL;
 }
 
+Scan *scan_file_no_memory(const ScanFile *f, GError **error)
+{
+    g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_NOMEM, "can't read %s: %s", f->path, g_strerror(ENOMEM));
+    return NULL;
+}
+
 Scan *scan_file_new(const ScanFile *f, uint64_t width, uint64_t height, uint32_t channels, uint32_t depth, GError **error)
 {
     if (width == 0 || height == 0 || width > INT32_MAX || height > INT32_MAX)
@@ -52,9 +70,7 @@ Scan *scan_file_new(const ScanFile *f, uint64_t width, uint64_t height, uint32_t
                                "is %" G_GUINT64_FORMAT " × %" G_GUINT64_FORMAT " pixels; at most %" G_GUINT64_FORMAT " in all are allowed",
                                width, height, f->max_pixels);
     Scan *s = scan_new((uint32_t)width, (uint32_t)height, channels, depth);
-    if (!s)
-        return scan_file_error(f, SCAN_ERROR_SIZE, error, "no memory for %" G_GUINT64_FORMAT " × %" G_GUINT64_FORMAT " pixels", width, height);
-    return s;
+    return s ? s : scan_file_no_memory(f, error);
 }
 
 /* Pixels a millimetre that are the same both ways and that some device has: 1 … 50 000 dots an inch. */
@@ -100,10 +116,12 @@ static Scan *read_open(ScanFile *f, GError **error)
     Scan *s = read(f, error);
     if (s && !scan_orient(s, f->orientation)) {
         scan_free(s);
-        return scan_file_error(f, SCAN_ERROR_SIZE, error, "no memory to turn the image upright (orientation %u)", f->orientation);
+        return scan_file_no_memory(f, error);
     }
-    if (s)
+    if (s) {
         s->mm_per_pixel = mm_per_pixel(f);
+        s->as_stored = read != scan_read_tiff && (f->orientation < 2 || f->orientation > 8);
+    }
     return s;
 }
 

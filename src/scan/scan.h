@@ -23,6 +23,7 @@ typedef struct {
     uint32_t depth;         /* bits a sample: 8 or 16 */
     double mm_per_pixel;    /* 0: the file doesn't say, or its pixels are not square */
     void *px;               /* [height][width][channels], rows from the top: uint8_t or uint16_t */
+    bool as_stored;         /* other programs show the file so, too: a PNG or JPEG that no orientation tag turns */
 } Scan;
 
 /* Pixels that scan_read allows when it is told no limit: 23 000 × 23 000. */
@@ -36,6 +37,7 @@ Scan *scan_read(const char *path, uint64_t max_pixels, GError **error);
 
 /* An image of zeros; NULL when there is no memory for it. */
 Scan *scan_new(uint32_t width, uint32_t height, uint32_t channels, uint32_t depth);
+Scan *scan_copy(const Scan *s); /* NULL likewise */
 void scan_free(Scan *s);
 
 static inline uint32_t scan_sample(const Scan *s, uint32_t x, uint32_t y, uint32_t channel)

@@ -23,6 +23,9 @@ Scan *scan_read_tiff(ScanFile *f, GError **error);
 /* Memory for an image as the file announces it, within the limit. */
 Scan *scan_file_new(const ScanFile *f, uint64_t width, uint64_t height, uint32_t channels, uint32_t depth, GError **error);
 
+/* Sets the error that memory is lacking, which is not the image's fault. Returns NULL. */
+Scan *scan_file_no_memory(const ScanFile *f, GError **error);
+
 /* Sets an error "path: …". Returns NULL. */
 Scan *scan_file_error(const ScanFile *f, ScanError code, GError **error, const char *format, ...) G_GNUC_PRINTF(4, 5);
 

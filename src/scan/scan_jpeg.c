@@ -18,6 +18,7 @@ typedef struct {
     Scan *scan;
     uint8_t *row; /* of CMYK */
     ScanError kind;
+    bool no_memory;
     char message[JMSG_LENGTH_MAX];
     GError *error;
 } Reader;
@@ -28,7 +29,8 @@ G_NORETURN static void on_error(j_common_ptr jpeg)
     jpeg->err->format_message(jpeg, r->message);
     int code = jpeg->err->msg_code;
     bool unknown = code == JERR_BAD_PRECISION || code == JERR_SOF_UNSUPPORTED || code == JERR_ARITH_NOTIMPL || code == JERR_CONVERSION_NOTIMPL;
-    r->kind = unknown ? SCAN_ERROR_KIND : code == JERR_OUT_OF_MEMORY ? SCAN_ERROR_SIZE : SCAN_ERROR_DAMAGED;
+    r->no_memory = code == JERR_OUT_OF_MEMORY;
+    r->kind = unknown ? SCAN_ERROR_KIND : SCAN_ERROR_DAMAGED;
     longjmp(r->jump, 1);
 }
 
@@ -126,6 +128,8 @@ Scan *scan_read_jpeg(ScanFile *f, GError **error)
         scan = NULL;
         if (r->error)
             g_propagate_error(error, r->error);
+        else if (r->no_memory)
+            scan_file_no_memory(f, error);
         else if (ferror(f->file))
             g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_IO, "can't read %s", f->path);
         else

@@ -9,7 +9,7 @@ typedef struct {
     png_structp png;
     png_infop info;
     Scan *scan;
-    int code;      /* errno of a failed read */
+    int code;      /* errno of a failed read or allocation */
     char *message; /* libpng's, of any other failure */
     GError *error; /* of our own */
 } Reader;
@@ -26,6 +26,21 @@ static void on_warning(png_structp png, png_const_charp message)
 {
     (void)png;
     (void)message;
+}
+
+static void *on_malloc(png_structp png, png_alloc_size_t n)
+{
+    Reader *r = png_get_mem_ptr(png);
+    void *block = g_try_malloc(n);
+    if (!block)
+        r->code = ENOMEM;
+    return block;
+}
+
+static void on_free(png_structp png, void *block)
+{
+    (void)png;
+    g_free(block);
 }
 
 static void on_read(png_structp png, png_bytep data, png_size_t n)
@@ -90,7 +105,7 @@ static gboolean decode(Reader *r)
 Scan *scan_read_png(ScanFile *f, GError **error)
 {
     Reader r = {.f = f};
-    r.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, on_error, on_warning);
+    r.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &r, on_error, on_warning, &r, on_malloc, on_free);
     if (r.png)
         r.info = png_create_info_struct(r.png);
     gboolean ok = r.info && decode(&r);

@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <string.h>
 #include <tiffio.h>
 
@@ -7,7 +8,8 @@
 typedef struct {
     ScanFile *f;
     TIFF *tif;
-    char *message; /* libtiff's first complaint */
+    char *message;  /* libtiff's first complaint */
+    bool no_memory; /* it came when memory was lacking */
     uint32_t width, height;
     uint16_t bits, samples, format, photometric, planar, compression;
     uint32_t colours;      /* samples that are colour, 0: only libtiff knows how */
@@ -17,6 +19,7 @@ typedef struct {
 static int on_error(TIFF *tif, void *user, const char *module, const char *format, va_list args)
 {
     Reader *r = user;
+    r->no_memory |= errno == ENOMEM;
     if (!r->message)
         r->message = g_strdup_vprintf(format, args);
     return 1;
@@ -24,16 +27,31 @@ static int on_error(TIFF *tif, void *user, const char *module, const char *forma
 
 static int on_warning(TIFF *tif, void *user, const char *module, const char *format, va_list args) { return 1; }
 
+/* Some complaints begin with the file's name, which the error has already. */
+static const char *complaint(const Reader *r)
+{
+    gsize n = strlen(r->f->path);
+    bool named = r->message && !strncmp(r->message, r->f->path, n) && g_str_has_prefix(r->message + n, ": ");
+    return named ? r->message + n + 2 : r->message;
+}
+
 static Scan *damaged(Reader *r, GError **error)
 {
-    return scan_file_error(r->f, SCAN_ERROR_DAMAGED, error, "damaged TIFF image: %s", r->message ? r->message : "libtiff failed");
+    if (r->no_memory)
+        return scan_file_no_memory(r->f, error);
+    return scan_file_error(r->f, SCAN_ERROR_DAMAGED, error, "damaged TIFF image: %s", r->message ? complaint(r) : "libtiff failed");
 }
+
+/* More than an image within the limit takes in one piece. */
+static uint64_t most_bytes(const ScanFile *f) { return MIN(f->max_pixels, (uint64_t)G_MAXINT64 / 16) * 8 + (1 << 26); }
 
 /* A tile or row buffer; libtiff's sizes come from the file, so they are not to be trusted. */
 static uint8_t *buffer_new(Reader *r, tmsize_t bytes, GError **error)
 {
     uint8_t *b = bytes > 0 ? g_try_malloc0((gsize)bytes) : NULL;
-    if (!b)
+    if (!b && bytes > 0 && (uint64_t)bytes <= most_bytes(r->f))
+        scan_file_no_memory(r->f, error);
+    else if (!b)
         scan_file_error(r->f, SCAN_ERROR_SIZE, error, "no memory for a part of %" G_GINT64_FORMAT " bytes", (gint64)bytes);
     return b;
 }
@@ -169,7 +187,7 @@ static Scan *read_converted(Reader *r, GError **error)
     char why[1024] = "";
     TIFFRGBAImage image;
     if (!TIFFRGBAImageOK(r->tif, why) || !TIFFRGBAImageBegin(&image, r->tif, 1, why))
-        return scan_file_error(r->f, SCAN_ERROR_KIND, error, "can't read this TIFF image: %s",
+        return r->no_memory ? damaged(r, error) : scan_file_error(r->f, SCAN_ERROR_KIND, error, "can't read this TIFF image: %s",
                                why[0] ? why : r->message ? r->message : "unknown kind");
     image.req_orientation = image.orientation; /* rows as they are stored */
     bool grey = r->photometric == PHOTOMETRIC_MINISBLACK || r->photometric == PHOTOMETRIC_MINISWHITE;
@@ -247,9 +265,12 @@ Scan *scan_read_tiff(ScanFile *f, GError **error)
 {
     Reader r = {.f = f};
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (!options)
+        return scan_file_no_memory(f, error);
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, &r);
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, &r);
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)MIN(f->max_pixels, G_MAXINT64 / 16) * 8 + (1 << 26));
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)most_bytes(f));
+    errno = 0;
     r.tif = TIFFOpenExt(f->path, "rm", options); /* m: no memory map, which would fault if the file shrank */
     Scan *s = r.tif ? read_image(&r, error) : damaged(&r, error);
     if (r.tif)

@@ -4,102 +4,6 @@
 /* A node born nearer than this to another one would only double it. Segments. */
 static const double crowding = 0.1;
 
-/* ---- S(v): who pulls whom ---- */
-
-/* Threads take shares of a batch of sources. */
-typedef struct {
-    Simulation *s;
-    uint32_t first;
-} Batch;
-
-static void pull_add(Simulation *s, const Draught *d)
-{
-    Veins *veins = &s->veins;
-    uint32_t v = d->node, k = veins->pull[v];
-    if (k >= s->n_pulled || s->pulled[k].node != v) {
-        if (s->n_pulled == s->cap_pulled) {
-            s->cap_pulled = MAX(s->cap_pulled * 2, 1024);
-            s->pulled = g_renew(Pulled, s->pulled, s->cap_pulled);
-        }
-        k = veins->pull[v] = s->n_pulled++;
-        s->pulled[k] = (Pulled){.node = v, .first = NO_POINT, .last = NO_POINT};
-    }
-    if (s->n_pull == s->cap_pull) {
-        s->cap_pull = MAX(s->cap_pull * 2, 1024);
-        s->pull = g_renew(Pull, s->pull, s->cap_pull);
-    }
-    Pulled *p = &s->pulled[k];
-    s->pull[s->n_pull] = (Pull){d->source, d->member, NO_POINT};
-    if (p->last == NO_POINT)
-        p->first = s->n_pull;
-    else
-        s->pull[p->last].next = s->n_pull;
-    p->last = s->n_pull++;
-    p->count++;
-    p->sum = vec_add(p->sum, d->towards);
-}
-
-/* Members that the source pulls now. A reached source of a closed pattern waits for its tagged veins alone, and not for those that
- * have arrived. */
-static uint8_t pulling(const Simulation *s, uint32_t k)
-{
-    const Source *src = &s->source[k];
-    double kill = kill2(s), past = past2(s);
-    uint8_t mask = 0;
-    for (uint32_t i = 0; i < src->hood.n; i++) {
-        uint8_t bit = (uint8_t)(1u << i);
-        double d2 = vec_dist2(s->place[k], s->veins.pos[src->hood.m[i]]);
-        if ((src->spent & bit) || d2 <= past)
-            continue;
-        if ((s->mark[k] & MARK_REACHED) && (!(src->tagged & bit) || d2 < kill))
-            continue;
-        mask |= bit;
-    }
-    return mask;
-}
-
-/* Works out the pulls of one share of the sources. */
-static void draw(uint32_t first, uint32_t last, void *user)
-{
-    const Batch *b = user;
-    const Simulation *s = b->s;
-    Share *share = &s->share[first / SHARE];
-    bool open = s->def.pattern == PATTERN_OPEN;
-    double past = past2(s);
-    share->n = share->live = 0;
-    for (uint32_t k = b->first + first; k < b->first + last; k++) {
-        if (s->mark[k] & MARK_IDLE)
-            continue;
-        uint8_t mask = open ? s->near[k] != NO_POINT && s->near2[k] > past : pulling(s, k);
-        share->live += mask != 0;
-        for (uint8_t i = 0; mask; i++, mask >>= 1) {
-            if (!(mask & 1))
-                continue;
-            uint32_t v = source_member(s, k, i);
-            Vec2 towards = vec_sub(s->place[k], s->veins.pos[v]);
-            share->pull[share->n++] = (Draught){vec_scale(towards, 1.0 / sqrt(vec_norm2(towards))), v, k, i};
-        }
-    }
-}
-
-/* Fills pulled[] with every S(v) and the sums of eq. 1, in the order of the sources. Returns the number of sources that pull at all. */
-static uint32_t gather_pulls(Simulation *s)
-{
-    uint32_t live = 0;
-    s->n_pull = s->n_pulled = 0;
-    for (Batch b = {s, 0}; b.first < s->n_sources; b.first += SHARE * SHARES) {
-        uint32_t n = MIN(s->n_sources - b.first, SHARE * SHARES);
-        pool_for(s->pool, n, SHARE, draw, &b);
-        for (uint32_t i = 0; i * SHARE < n; i++) {
-            const Share *share = &s->share[i];
-            live += share->live;
-            for (uint32_t j = 0; j < share->n; j++)
-                pull_add(s, &share->pull[j]);
-        }
-    }
-    return live;
-}
-
 /* ---- new vein nodes ---- */
 
 static void fresh_add(Simulation *s, uint32_t v)
@@ -145,27 +49,23 @@ static bool grow(Simulation *s, uint32_t v, Vec2 direction, bool looked)
 static void grow_single(Simulation *s, const Pulled *p)
 {
     for (;;) {
-        uint32_t best = NO_POINT;
+        Pull pull, best = {NO_POINT, 0};
         double best2 = HUGE_VAL;
-        for (uint32_t k = p->first; k != NO_POINT; k = s->pull[k].next) {
-            uint32_t slot = s->pull[k].source;
-            double d2 = vec_dist2(s->place[slot], s->veins.pos[p->node]);
-            bool spent = s->mark[slot] & MARK_IDLE || (s->source && s->source[slot].spent >> s->pull[k].member & 1);
-            if (!spent && d2 < best2) {
+        for (uint32_t k = p->first; pulls_next(s, p, k, &pull); k = pull.slot + 1) {
+            double d2 = vec_dist2(s->place[pull.slot], s->veins.pos[p->node]);
+            if (d2 < best2) {
                 best2 = d2;
-                best = k;
+                best = pull;
             }
         }
-        if (best == NO_POINT)
+        if (best.slot == NO_POINT || grow(s, p->node, vec_sub(s->place[best.slot], s->veins.pos[p->node]), false))
             return;
-        uint32_t slot = s->pull[best].source;
-        uint8_t i = s->pull[best].member;
-        if (grow(s, p->node, vec_sub(s->place[slot], s->veins.pos[p->node]), false))
-            return;
-        if (s->def.pattern == PATTERN_OPEN)
-            s->mark[slot] |= MARK_IDLE;
-        else
-            s->source[slot].spent |= (uint8_t)(1u << i);
+        if (s->def.pattern == PATTERN_OPEN) {
+            s->mark[best.slot] |= MARK_IDLE;
+        } else {
+            crowd_part(s, best.slot);
+            s->source[best.slot].spent |= (uint8_t)(1u << best.member);
+        }
     }
 }
 
@@ -194,18 +94,6 @@ static void grow_pulled(Simulation *s)
         if (cancelled || p->barred || !grow(s, p->node, p->sum, looked))
             grow_single(s, p);
     }
-}
-
-/* ---- the step ---- */
-
-uint32_t veins_develop(Simulation *s)
-{
-    uint32_t live = gather_pulls(s);
-    grow_pulled(s);
-    given_appear(s, fresh_add);
-    if (s->n_fresh)
-        sources_update(s);
-    return live;
 }
 
 /* ---- removal and anastomosis ---- */
@@ -287,14 +175,138 @@ static bool finished(Simulation *s, uint32_t k)
     return true;
 }
 
+bool source_remove_reached(Simulation *s, uint32_t k)
+{
+    if (!(s->mark[k] & (MARK_WITHIN | MARK_REACHED)) || !finished(s, k))
+        return false;
+    s->counts.reached++;
+    source_remove(s, k);
+    return true;
+}
+
+static void remove_all(Simulation *s, uint32_t first, uint32_t last)
+{
+    for (uint32_t k = first; k < last; k++)
+        if (s->mark[k])
+            source_remove_reached(s, k);
+}
+
+/* ---- a turn of all sources ---- */
+
+/* What the sources do, band by band: look at the fresh nodes, each on its own and on any thread; then, in the order of the slots and by one
+ * thread at a time, go when they are reached, and pull. */
+typedef struct {
+    Simulation *s;
+    bool look, remove, pull;
+    uint32_t ring;   /* bands that may wait */
+    gint settled;    /* bands that no longer do; atomic */
+    gint busy;       /* a thread is settling; atomic */
+} Turn;
+
+static void settle(Turn *t, uint32_t b)
+{
+    Simulation *s = t->s;
+    const Band *band = &s->crowds.band[b];
+    gsize at = (gsize)(b % t->ring) * s->crowds.longest;
+    if (t->pull)
+        pulls_sum(s, band->first, band->last, t->remove, s->pull_x + at, s->pull_y + at);
+    else
+        remove_all(s, band->first, band->last);
+}
+
+/* Settles what can be, unless another thread does. */
+static void settle_ready(Turn *t)
+{
+    gint n = (gint)t->s->crowds.n_bands, b = g_atomic_int_get(&t->settled);
+    while (b < n && g_atomic_int_get(&t->s->ready[b])) {
+        if (!g_atomic_int_compare_and_exchange(&t->busy, 0, 1))
+            return; /* the other one looks again after it is through */
+        for (b = g_atomic_int_get(&t->settled); b < n && g_atomic_int_get(&t->s->ready[b]); b++) {
+            settle(t, (uint32_t)b);
+            g_atomic_int_set(&t->settled, b + 1);
+        }
+        g_atomic_int_set(&t->busy, 0);
+    }
+}
+
+static void take_bands(uint32_t first, uint32_t last, void *user)
+{
+    Turn *t = user;
+    Simulation *s = t->s;
+    Sight sight;
+    for (uint32_t b = first; b < last; b++) {
+        const Band *band = &s->crowds.band[b];
+        uint32_t seen = 0;
+        for (uint32_t c = band->first_crowd; t->look && c < band->last_crowd; c++)
+            seen += crowd_look(s, &s->crowds.crowd[c], &sight);
+        if (seen)
+            g_atomic_int_add(&s->seen, (gint)seen); /* a sum: the order of the threads doesn't matter */
+        while (b >= (uint32_t)g_atomic_int_get(&t->settled) + t->ring) {
+            settle_ready(t);
+            g_thread_yield();
+        }
+        gsize at = (gsize)(b % t->ring) * s->crowds.longest;
+        if (t->pull && s->veins.n)
+            pulls_draw(s, band->first, band->last, s->pull_x + at, s->pull_y + at);
+        g_atomic_int_set(&s->ready[b], 1);
+        settle_ready(t);
+    }
+}
+
+void sources_turn(Simulation *s, bool look, bool remove, bool pull)
+{
+    const Crowds *c = &s->crowds;
+    Turn t = {.s = s, .look = look, .remove = remove, .pull = pull, .ring = pool_threads(s->pool) > 1 ? 4 * pool_threads(s->pool) : 1};
+    if (look) {
+        boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
+        crowds_prepare(s);
+    }
+    gsize wanted = (gsize)t.ring * c->longest;
+    if (s->cap_pull < wanted) {
+        s->cap_pull = wanted + wanted / 2;
+        s->pull_x = g_renew(double, s->pull_x, s->cap_pull);
+        s->pull_y = g_renew(double, s->pull_y, s->cap_pull);
+    }
+    if (s->cap_ready < c->n_bands) {
+        s->cap_ready = 2 * c->n_bands;
+        s->ready = g_renew(gint, s->ready, s->cap_ready);
+    }
+    for (uint32_t b = 0; b < c->n_bands; b++)
+        s->ready[b] = 0;
+    if (pull) {
+        s->n_pulled = s->n_live = 0;
+        s->drawn = true;
+    }
+    s->seen = 0;
+    pool_for(s->pool, c->n_bands, 1, take_bands, &t);
+    s->counts.updates += (uint64_t)s->seen;
+}
+
+/* ---- the step ---- */
+
+/* From now on only veins change, so that the next step's pulls are known when this one's nodes have been looked at. */
+static bool quiet(const Simulation *s)
+{
+    bool darts = s->def.placement == PLACEMENT_DARTS && !(s->def.only_while_growing && s->blade->step >= MAX(s->blade->last_step, 1));
+    return s->blade->step >= s->blade->last_step && !darts && !sources_waiting(s);
+}
+
+uint32_t veins_develop(Simulation *s)
+{
+    if (!s->drawn)
+        sources_turn(s, false, false, true);
+    s->drawn = false;
+    uint32_t live = s->n_live;
+    grow_pulled(s);
+    given_appear(s, fresh_add);
+    return live;
+}
+
 void sources_remove(Simulation *s)
 {
-    for (uint32_t k = 0; k < s->n_sources; k++) {
-        if (!(s->mark[k] & (MARK_WITHIN | MARK_REACHED)) || !finished(s, k))
-            continue;
-        s->counts.reached++;
-        source_remove(s, k);
-    }
-    if (s->n_removed + s->n_unsorted > 64 + s->n_sources / 4)
+    bool still = quiet(s);
+    sources_turn(s, s->n_fresh > 0, true, still);
+    /* without newcomers the order stays what it is, and closing the gaps soon is only a matter of speed */
+    if (s->n_removed + s->n_unsorted > 64 + s->n_sources / 4 || (still && s->n_unsorted == 0 && s->n_removed > 32 + s->n_sources / 16))
         sources_sort(s);
 }

@@ -1,4 +1,7 @@
 /* Sources look at the vein nodes of a step. Each is on its own, so threads can't change the outcome. */
+#include <string.h>
+
+#include "geom/vectors.h"
 #include "sim/state.h"
 
 /* ---- one source ---- */
@@ -23,32 +26,22 @@ static void carry_masks(const Simulation *s, uint32_t k, const Source *old)
 /* A zone costs more than a look, so it is worked out when a look was in vain. */
 static void look_closed(Simulation *s, uint32_t k)
 {
+    source_set_apart(s, k);
     Source *src = &s->source[k], old = *src;
     Eye eye;
     Field f = source_field(s, k, &eye);
-    bool changed = s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE
-                       ? hood_update(&src->hood, &f, s->place[k], &s->fresh_tree)
-                       : urquhart_update(&src->hood, &s->cell[k], &f, s->place[k], &s->fresh_tree);
+    bool relative = s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE;
+    bool changed = relative ? hood_update(&src->hood, &f, s->place[k], &s->fresh_tree)
+                            : urquhart_update(&src->hood, &s->cell[k], &f, s->place[k], &s->fresh_tree);
     if (!changed) {
         s->mark[k] |= MARK_ZONED;
-        zones_set(&s->zones, k, source_zone(s, k));
+        s->zone[k] = zone_box(relative ? hood_zone(&src->hood, &f, s->place[k]) : urquhart_zone(&s->cell[k], &f, s->place[k]));
         return;
     }
     if (old.tagged | old.spent)
         carry_masks(s, k, &old);
+    s->mark[k] &= (uint8_t)~MARK_ZONED;
     source_weigh(s, k);
-    if (s->mark[k] & MARK_ZONED) {
-        s->mark[k] = (uint8_t)((s->mark[k] & ~MARK_ZONED) | MARK_GROWN);
-        zones_set(&s->zones, k, f.field);
-        g_atomic_int_set(&s->grown, 1);
-    }
-}
-
-static bool concerned(const Simulation *s, uint32_t k)
-{
-    if (s->def.pattern == PATTERN_OPEN || !(s->mark[k] & MARK_ZONED))
-        return true;
-    return boxtree_any_in(&s->fresh_tree, s->veins.pos, zones_get(&s->zones, k));
 }
 
 static void look_open(Simulation *s, uint32_t k)
@@ -63,160 +56,6 @@ static void look_open(Simulation *s, uint32_t k)
     source_weigh(s, k);
 }
 
-/* ---- a crowd of sources ---- */
-
-/* Sources beside each other that have one neighbour each: those of an open pattern always, those of a closed one while they are ahead of
- * the veins, as nearly all are where many are placed at once. Their neighbours move at every step, each to the nearest new node; which few
- * that can be, and which others need not be excluded by it, is found for all of them together. */
-enum { FEW = 128, CROWD_LEAST = 4, CROWD_MOST = 128 };
-typedef struct {
-    uint32_t n, slot[CROWD_MOST];
-    Box2 place;   /* of all of them */
-    double most2; /* squared distance of the farthest neighbour */
-} Crowd;
-
-typedef double Pair __attribute__((vector_size(16)));
-typedef int64_t PairMask __attribute__((vector_size(16)));
-
-/* New nodes, beside each other in memory. */
-typedef struct {
-    uint32_t n;
-    uint32_t v[FEW];
-    union {
-        double at[FEW + 2];
-        Pair pair[FEW / 2 + 1];
-    } x, y; /* an odd number of nodes is followed by a place out of sight */
-} Few;
-
-/* What a crowd looks at. */
-typedef struct {
-    Few nearest; /* the nodes that may be nearest to a source; ascending */
-    Few open;    /* closed: those that may be nearer to a source than to its nearest */
-} Sight;
-
-/* Is slot k, a living one, like those of a crowd? */
-static bool crowds(const Simulation *s, uint32_t k)
-{
-    return s->def.pattern == PATTERN_OPEN ||
-           (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE && s->source[k].hood.n == 1 && !(s->mark[k] & MARK_ZONED));
-}
-
-static void crowd_start(Crowd *c)
-{
-    c->n = 0;
-    c->place = box_empty();
-    c->most2 = -1.0;
-}
-
-static void crowd_add(const Simulation *s, Crowd *c, uint32_t k)
-{
-    Vec2 p = s->place[k];
-    double d2 = HUGE_VAL;
-    c->slot[c->n++] = k;
-    c->place = box_add(c->place, p);
-    if (source_members(s, k))
-        d2 = vec_dist2(p, s->veins.pos[source_member(s, k, 0)]);
-    c->most2 = MAX(c->most2, d2);
-}
-
-static void few_fill(Few *few, const Vec2 *pos)
-{
-    for (uint32_t j = 0; j < few->n; j++) {
-        few->x.at[j] = pos[few->v[j]].x;
-        few->y.at[j] = pos[few->v[j]].y;
-    }
-    few->x.at[few->n] = few->y.at[few->n] = HUGE_VAL;
-}
-
-/* FALSE when there are too many, and each source must look for itself. */
-static bool sight_find(const Simulation *s, const Crowd *c, Sight *sight)
-{
-    const Vec2 *pos = s->veins.pos;
-    Few *nearest = &sight->nearest, *open = &sight->open;
-    if (c->n < CROWD_LEAST)
-        return false;
-    nearest->n = boxtree_nearest_to(&s->fresh_tree, pos, c->place, c->most2, nearest->v, FEW);
-    if (nearest->n > FEW)
-        return false;
-    few_fill(nearest, pos);
-    if (s->def.pattern == PATTERN_OPEN)
-        return true;
-    Box2 near = box_empty();
-    for (uint32_t j = 0; j < nearest->n; j++)
-        near = box_add(near, pos[nearest->v[j]]);
-    open->n = boxtree_nearer(&s->fresh_tree, pos, c->place, near, open->v, FEW);
-    if (open->n > FEW)
-        return false;
-    few_fill(open, pos);
-    return true;
-}
-
-/* The nearest of the few to p, if it is nearer than *d2; of equally near ones the smallest. */
-static uint32_t few_nearest(const Few *few, Vec2 p, double *d2)
-{
-    const Pair px = {p.x, p.x}, py = {p.y, p.y};
-    Pair least = {HUGE_VAL, HUGE_VAL};
-    for (uint32_t j = 0; j < (few->n + 1) / 2; j++) { /* without branches and two at a time: nearly all lie farther off */
-        Pair dx = few->x.pair[j] - px, dy = few->y.pair[j] - py, e2 = dx * dx + dy * dy;
-        PairMask nearer = e2 < least;
-        least = (Pair)(((PairMask)e2 & nearer) | ((PairMask)least & ~nearer));
-    }
-    double best2 = MIN(least[0], least[1]);
-    if (best2 >= *d2)
-        return NO_POINT;
-    *d2 = best2;
-    uint32_t j = 0;
-    while (vec_dist2(vec2(few->x.at[j], few->y.at[j]), p) != best2)
-        j++;
-    return few->v[j];
-}
-
-/* Does a node at u, nearer to p than all of the few, exclude them? */
-static bool few_excluded(const Few *few, Vec2 p, Vec2 u)
-{
-    const Pair px = {p.x, p.x}, py = {p.y, p.y}, ux = {u.x, u.x}, uy = {u.y, u.y};
-    PairMask out = {0, 0};
-    for (uint32_t j = 0; j < (few->n + 1) / 2; j++) {
-        Pair x = few->x.pair[j], y = few->y.pair[j];
-        out |= (x - ux) * (x - ux) + (y - uy) * (y - uy) > (x - px) * (x - px) + (y - py) * (y - py);
-    }
-    return !(out[0] | out[1]);
-}
-
-/* Moves one source of the crowd to its nearest new node. FALSE when it must look for itself: when it can't see that node, or (closed) when
- * that node is not all its neighbourhood by now. */
-static bool sight_show(Simulation *s, uint32_t k, const Sight *sight)
-{
-    bool open = s->def.pattern == PATTERN_OPEN;
-    Source *src = open ? NULL : &s->source[k];
-    const Vec2 *pos = s->veins.pos;
-    Vec2 p = s->place[k];
-    double old2 = open ? s->near2[k] : vec_dist2(p, pos[src->hood.m[0]]), d2 = old2;
-    uint32_t v = few_nearest(&sight->nearest, p, &d2);
-    if (v == NO_POINT)
-        return open; /* in vain: a closed one will want its zone */
-    if (!open && (vec_dist2(pos[v], pos[src->hood.m[0]]) > old2 || !few_excluded(&sight->open, p, pos[v])))
-        return false;
-    if (s->reach && !source_sees(s, k, v))
-        return false;
-    if (open) {
-        s->near[k] = v;
-        s->near2[k] = d2;
-        s->mark[k] &= (uint8_t)~MARK_IDLE;
-    } else if (src->tagged | src->spent) {
-        Source old = *src;
-        src->hood.m[0] = v;
-        carry_masks(s, k, &old);
-    } else {
-        src->hood.m[0] = v;
-    }
-    if (d2 < kill2(s))
-        s->mark[k] |= MARK_WITHIN;
-    return true;
-}
-
-/* ---- squares of cells ---- */
-
 static void look_alone(Simulation *s, uint32_t k)
 {
     if (s->def.pattern == PATTERN_OPEN)
@@ -225,90 +64,288 @@ static void look_alone(Simulation *s, uint32_t k)
         look_closed(s, k);
 }
 
-static void look_together(Simulation *s, Crowd *crowd)
+/* ---- a crowd ---- */
+
+/* Four sources, and which of the nearest few is the new nearest node of each. */
+typedef struct {
+    Four x, y, d2;
+    FourMask which; /* -1: none is nearer than the node that it has */
+} Block;
+
+/* Of equally near nodes the smallest, and the one before over all. Removed sources and those apart are nearer than anything to theirs. */
+static inline __attribute__((always_inline)) void block_look(const Simulation *s, uint32_t k, uint32_t n, const Few *few, Block *b)
 {
-    Sight sight;
-    bool few = sight_find(s, crowd, &sight);
-    for (uint32_t i = 0; i < crowd->n; i++)
-        if (!few || !sight_show(s, crowd->slot[i], &sight))
-            look_alone(s, crowd->slot[i]);
-    crowd_start(crowd);
+    double x[4], y[4], d2[4] = {-1.0, -1.0, -1.0, -1.0};
+    for (uint32_t l = 0; l < 4; l++) {
+        uint32_t i = l < n ? k + l : k;
+        x[l] = s->place[i].x;
+        y[l] = s->place[i].y;
+        if (l < n)
+            d2[l] = s->near2[i];
+    }
+    Four px = {x[0], x[1], x[2], x[3]}, py = {y[0], y[1], y[2], y[3]}, least = {d2[0], d2[1], d2[2], d2[3]};
+    FourMask which = {-1, -1, -1, -1};
+    for (uint32_t j = 0; j < few->n; j++) {
+        Four dx = px - FOUR(few->x[j]), dy = py - FOUR(few->y[j]), e2 = dx * dx + dy * dy;
+        FourMask nearer = e2 < least, number = {j, j, j, j};
+        least = FOUR_PICK(nearer, e2, least);
+        which = (number & nearer) | (which & ~nearer);
+    }
+    b->x = px;
+    b->y = py;
+    b->d2 = least;
+    b->which = which;
 }
 
-static uint32_t look_from_cell(Simulation *s, uint32_t cell, Crowd *crowd)
+/* A source of an open pattern. When it can't see the node it looks for itself. */
+static void show_open(Simulation *s, uint32_t k, uint32_t v, double d2, double within2)
+{
+    if (s->reach && !source_sees(s, k, v)) {
+        look_open(s, k);
+        return;
+    }
+    s->near[k] = v;
+    s->near2[k] = d2;
+    s->mark[k] = d2 < within2 ? MARK_WITHIN : 0;
+}
+
+static inline double four_most(const Four *v) { return MAX(MAX((*v)[0], (*v)[1]), MAX((*v)[2], (*v)[3])); }
+
+/* Most often those of the four that are plain turn to new nodes and stay plain; the others are no matter. FALSE: see for each. */
+static inline __attribute__((always_inline)) bool all_move_on(Simulation *s, uint32_t k, const Block *b, FourMask trouble, double within2,
+                                                              const Few *few)
+{
+    FourMask plain = b->d2 >= FOUR(0.0);
+    trouble = (trouble | (b->which < (FourMask){0, 0, 0, 0}) | (b->d2 < FOUR(within2))) & plain;
+    uint32_t marks;
+    memcpy(&marks, s->mark + k, sizeof marks);
+    if (s->reach || FOUR_ANY(trouble))
+        return false;
+    for (uint32_t l = 0; marks && l < 4; l++)
+        if (plain[l] && s->mark[k + l])
+            return false;
+    for (uint32_t l = 0; l < 4; l++)
+        if (plain[l])
+            s->near[k + l] = few->v[b->which[l]];
+    memcpy(s->near2 + k, &b->d2, sizeof b->d2);
+    return true;
+}
+
+static FOUR_WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Few *few)
+{
+    double within2 = MAX(kill2(s), past2(s));
+    Four most2 = FOUR(-1.0);
+    for (uint32_t k = first; k < last; k += 4) {
+        uint32_t n = MIN(4, last - k);
+        Block b;
+        if (n == 4)
+            block_look(s, k, 4, few, &b);
+        else
+            block_look(s, k, n, few, &b);
+        if (n == 4 && all_move_on(s, k, &b, (FourMask){0, 0, 0, 0}, within2, few)) {
+            most2 = FOUR_PICK(b.d2 > most2, b.d2, most2);
+            continue;
+        }
+        for (uint32_t l = 0; l < n; l++)
+            if (b.which[l] >= 0)
+                show_open(s, k + l, few->v[b.which[l]], b.d2[l], within2);
+        for (uint32_t l = 0; s->reach && l < n; l++)
+            b.d2[l] = s->near2[k + l]; /* that of a node it sees */
+        most2 = FOUR_PICK(b.d2 > most2, b.d2, most2);
+    }
+    return four_most(&most2);
+}
+
+/* ---- a crowd of a closed pattern ---- */
+
+/* Is a node at x excluded from the neighbourhood of k by the one at u, which is another? */
+static bool excludes_node(const Simulation *s, uint32_t k, uint32_t node, Vec2 u, Vec2 x, double d2)
+{
+    return vec_dist2(s->place[k], u) < d2 && vec_dist2(u, x) <= d2 && (!s->reach || source_sees(s, k, node));
+}
+
+/* The same by one of the few, or by a witness. */
+static bool excluded(const Simulation *s, uint32_t k, Vec2 x, const Few *few)
+{
+    const Hood *h = &s->source[k].hood;
+    double d2 = vec_dist2(s->place[k], x);
+    for (uint32_t j = 0; j < few->n; j++)
+        if (excludes_node(s, k, few->v[j], vec2(few->x[j], few->y[j]), x, d2))
+            return true;
+    for (uint32_t j = 0; j < h->n_witnesses; j++)
+        if (excludes_node(s, k, h->w[j], s->veins.pos[h->w[j]], x, d2))
+            return true;
+    return false;
+}
+
+/* Node v, which is nearer to k than any other, does not exclude all rivals. Do others? */
+static bool all_excluded(const Simulation *s, uint32_t k, uint32_t v, const Sight *sight)
+{
+    Vec2 p = s->place[k], u = s->veins.pos[v];
+    for (uint32_t j = 0; j < sight->rival.n; j++) {
+        Vec2 x = vec2(sight->rival.x[j], sight->rival.y[j]);
+        if (vec_dist2(u, x) > vec_dist2(p, x) && !excluded(s, k, x, &sight->nearest))
+            return false;
+    }
+    return true;
+}
+
+/* Moves one source to its new nearest node, which excludes the old one. FALSE when it must look for itself: when it can't see the node, or
+ * when that may not be all its neighbourhood by now. */
+static bool show_closed(Simulation *s, uint32_t k, uint32_t v, double d2, bool alone, const Sight *sight)
+{
+    if ((!alone && !all_excluded(s, k, v, sight)) || (s->reach && !source_sees(s, k, v)))
+        return false;
+    s->near[k] = v;
+    s->near2[k] = d2;
+    if (d2 < MAX(kill2(s), past2(s))) {
+        source_set_apart(s, k);
+        s->mark[k] |= MARK_WITHIN;
+    }
+    return true;
+}
+
+static FOUR_WIDE double look_closed_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, bool *parted)
+{
+    const Few *few = &sight->nearest, *rival = &sight->rival;
+    double most2 = -1.0, within2 = MAX(kill2(s), past2(s));
+    Four far2 = FOUR(-1.0);
+    for (uint32_t k = first; k < last; k += 4) {
+        uint32_t n = MIN(4, last - k);
+        Block b;
+        if (n == 4)
+            block_look(s, k, 4, few, &b);
+        else
+            block_look(s, k, n, few, &b);
+        double x[4], y[4], ox[4], oy[4], o2[4];
+        for (uint32_t l = 0; l < 4; l++) {
+            bool moves = l < n && b.which[l] >= 0;
+            Vec2 old = moves ? s->veins.pos[s->near[k + l]] : vec2(0.0, 0.0);
+            int64_t j = moves ? b.which[l] : 0;
+            x[l] = few->x[j];
+            y[l] = few->y[j];
+            ox[l] = old.x;
+            oy[l] = old.y;
+            o2[l] = moves ? s->near2[k + l] : HUGE_VAL;
+        }
+        Four vx = {x[0], x[1], x[2], x[3]}, vy = {y[0], y[1], y[2], y[3]};
+        Four fx = vx - (Four){ox[0], ox[1], ox[2], ox[3]}, fy = vy - (Four){oy[0], oy[1], oy[2], oy[3]};
+        FourMask stays = fx * fx + fy * fy > (Four){o2[0], o2[1], o2[2], o2[3]}, more = {0, 0, 0, 0};
+        for (uint32_t j = 0; j < rival->n; j++) {
+            Four rx = FOUR(rival->x[j]), ry = FOUR(rival->y[j]);
+            Four d2 = (rx - b.x) * (rx - b.x) + (ry - b.y) * (ry - b.y);
+            FourMask open = (rx - vx) * (rx - vx) + (ry - vy) * (ry - vy) > d2;
+            for (uint32_t i = 0; i < few->n && !s->reach && FOUR_ANY(open); i++) { /* is it excluded by another of the nearest few? */
+                double ux = few->x[i], uy = few->y[i];
+                Four dx = FOUR(ux) - b.x, dy = FOUR(uy) - b.y;
+                open &= ~((dx * dx + dy * dy < d2) & (FOUR(vec_dist2(vec2(ux, uy), vec2(rival->x[j], rival->y[j]))) <= d2));
+            }
+            more |= open;
+        }
+        if (n == 4 && all_move_on(s, k, &b, stays | more, within2, few)) {
+            far2 = FOUR_PICK(b.d2 > far2, b.d2, far2);
+            continue;
+        }
+        for (uint32_t l = 0; l < n; l++) {
+            if (s->near2[k + l] < 0.0)
+                continue;
+            int64_t j = b.which[l];
+            if (j < 0 || stays[l] || !show_closed(s, k + l, few->v[j], b.d2[l], !more[l], sight))
+                look_closed(s, k + l);
+            *parted |= (s->mark[k + l] & MARK_APART) != 0;
+            most2 = MAX(most2, s->near2[k + l]);
+        }
+    }
+    return MAX(most2, four_most(&far2));
+}
+
+/* ---- those apart ---- */
+
+/* Sources of the crowd that are apart. */
+static uint32_t list_apart(const Simulation *s, const Crowd *c, uint32_t *slot, uint32_t cap)
+{
+    uint32_t n = 0;
+    for (uint32_t r = 0; r < CROWD_SIDE; r++)
+        for (uint32_t k = c->first[r]; k < c->last[r]; k++)
+            if ((s->mark[k] & MARK_APART) && n++ < cap)
+                slot[n - 1] = k;
+    return n;
+}
+
+static bool concerned(const Simulation *s, uint32_t k)
+{
+    return !(s->mark[k] & MARK_ZONED) || boxtree_any_in(&s->fresh_tree, s->veins.pos, zone_as_box(s->zone[k]));
+}
+
+static uint32_t look_each(Simulation *s, const uint32_t *slot, uint32_t n)
 {
     uint32_t seen = 0;
-    for (uint32_t k = s->zones.head[cell]; k != NO_POINT; k = s->zones.next[k]) {
-        if (!source_is_alive(s, k) || !concerned(s, k))
-            continue;
-        seen++;
-        if (!crowds(s, k))
-            look_alone(s, k);
-        else
-            crowd_add(s, crowd, k);
-        if (crowd->n == CROWD_MOST)
-            look_together(s, crowd);
-    }
-    return seen;
-}
-
-/* Shows the new nodes to the sources of a square. Returns how many looked. */
-static uint32_t look_from_square(Simulation *s, uint32_t level, uint32_t square)
-{
-    const Zones *z = &s->zones;
-    uint32_t x0 = square % z->nx[level] << level, y0 = square / z->nx[level] << level, seen = 0;
-    Crowd crowd;
-    crowd_start(&crowd);
-    for (uint32_t y = y0; y < MIN(y0 + (1u << level), z->ny[0]); y++)
-        for (uint32_t x = x0; x < MIN(x0 + (1u << level), z->nx[0]); x++)
-            seen += look_from_cell(s, y * z->nx[0] + x, &crowd);
-    look_together(s, &crowd);
-    return seen;
-}
-
-/* An open pattern's cells are as large as 4 x 4 of a closed one. */
-static uint32_t square_level(const Simulation *s) { return s->def.pattern == PATTERN_OPEN ? 0 : MIN(2, s->zones.levels - 1); }
-
-static void look_from_squares(uint32_t first, uint32_t last, void *user)
-{
-    Simulation *s = user;
-    uint32_t seen = 0, level = square_level(s);
-    for (uint32_t i = first; i < last; i++)
-        seen += look_from_square(s, level, s->touched[i]);
-    g_atomic_int_add(&s->seen, (gint)seen); /* a sum: the order of the threads doesn't matter */
-}
-
-/* Brings the boxes above the zones up to date now and then: too large they are still right. */
-static void raise_zones(Simulation *s)
-{
-    bool open = s->def.pattern == PATTERN_OPEN;
-    if (s->blade->step % (open ? 1 + s->n_sources / 8192 : 16) != 0)
-        return;
-    for (uint32_t k = 0; open && k < s->n_sources; k++)
-        if (source_is_alive(s, k))
-            zones_set(&s->zones, k, source_zone(s, k));
-    zones_raise(&s->zones);
-}
-
-/* Too small they would be wrong. */
-static void lift_zones(Simulation *s)
-{
-    for (uint32_t k = 0; s->grown && k < s->n_sources; k++)
-        if (s->mark[k] & MARK_GROWN) {
-            zones_lift(&s->zones, k, s->place[k]);
-            s->mark[k] &= (uint8_t)~MARK_GROWN;
+    for (uint32_t i = 0; i < n; i++)
+        if (concerned(s, slot[i])) {
+            look_closed(s, slot[i]);
+            seen++;
         }
-    s->grown = 0;
+    return seen;
 }
 
-void sources_update(Simulation *s)
+/* ---- all of them ---- */
+
+static uint32_t look_all_alone(Simulation *s, const Crowd *c)
 {
-    enum { GRAIN = 4 };
-    raise_zones(s);
-    boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
-    s->n_touched = zones_visit(&s->zones, square_level(s), &s->fresh_tree, s->veins.pos, s->touched);
-    s->seen = 0;
-    pool_for(s->pool, s->n_touched, GRAIN, look_from_squares, s);
-    lift_zones(s);
-    s->counts.updates += (uint64_t)s->seen;
+    uint32_t seen = 0;
+    for (uint32_t r = 0; r < CROWD_SIDE; r++)
+        for (uint32_t k = c->first[r]; k < c->last[r]; k++)
+            if (s->near2[k] >= 0.0) {
+                look_alone(s, k);
+                seen++;
+            }
+    return seen;
+}
+
+enum { CROWD_LEAST = 4 }; /* fewer are better off alone */
+
+/* Those that pull one node each. `parted`: one of a closed pattern may no longer be like that. */
+static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, bool *parted)
+{
+    if (c->most2 < 0.0)
+        return 0;
+    bool open = s->def.pattern == PATTERN_OPEN, few = c->plain >= CROWD_LEAST && crowd_sight(s, c, sight);
+    if (open && few && sight->nearest.n == 0)
+        return 0;
+    if (!few || sight->nearest.n == 0) {
+        if (!open)
+            *parted = true;
+        return look_all_alone(s, c);
+    }
+    uint32_t seen = 0;
+    double most2 = -1.0;
+    for (uint32_t r = 0; r < CROWD_SIDE; r++) {
+        uint32_t first = c->first[r], last = c->last[r];
+        double run2 = open ? look_open_run(s, first, last, &sight->nearest) : look_closed_run(s, first, last, sight, parted);
+        most2 = MAX(most2, run2);
+        seen += last - first;
+    }
+    c->most2 = most2;
+    return seen;
+}
+
+uint32_t crowd_look(Simulation *s, Crowd *c, Sight *sight)
+{
+    enum { SOME = 128 };
+    if (s->def.pattern == PATTERN_OPEN)
+        return look_together(s, c, sight, NULL);
+    uint32_t some[SOME], *apart = some, n = 0;
+    bool any = c->restless || c->zone.x0 <= c->zone.x1;
+    if (any && (c->restless || boxtree_any_in(&s->fresh_tree, s->veins.pos, zone_as_box(c->zone)))) {
+        n = list_apart(s, c, some, SOME);
+        if (n > SOME)
+            list_apart(s, c, apart = g_new(uint32_t, n), n);
+    }
+    bool parted = false;
+    uint32_t seen = look_together(s, c, sight, &parted) + look_each(s, apart, n);
+    if (apart != some)
+        g_free(apart);
+    if (any || parted)
+        crowd_measure(s, c);
+    return seen;
 }

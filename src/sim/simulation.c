@@ -36,8 +36,10 @@ const char *end_reason_text(EndReason r)
 static void carry_source(Simulation *s, uint32_t k)
 {
     Source *src = s->source ? &s->source[k] : NULL, old = {0};
-    if (src)
+    if (src) {
+        source_set_apart(s, k);
         old = *src;
+    }
     s->place[k] = blade_place(s->blade, s->material[k]);
     source_look(s, k);
     s->mark[k] &= (uint8_t)~MARK_IDLE;
@@ -48,6 +50,7 @@ static void carry_source(Simulation *s, uint32_t k)
         for (uint32_t j = 0; j < old.hood.n; j++)
             if (src->hood.m[i] == old.hood.m[j])
                 src->tagged |= (uint8_t)((old.tagged >> j & 1) << i);
+    source_weigh(s, k);
 }
 
 static void carry_sources(uint32_t first, uint32_t last, void *user)
@@ -188,9 +191,7 @@ Simulation *simulation_new(const SimulationDef *def, GError **error)
     if (blade->moving)
         s->veins.material = g_new(Vec2, 1); /* grows with the nodes */
     double least = source_spacing(def, blade);
-    zones_init(&s->zones, field, (def->pattern == PATTERN_OPEN ? 8.0 : 2.0) * least);
-    s->share = g_new(Share, SHARES);
-    s->touched = g_new(uint32_t, zones_cells(&s->zones));
+    grid_init(&s->grid, field, (def->pattern == PATTERN_OPEN ? 8.0 : 2.0) * least);
     given_prepare(s);
     if (!sources_prepare(s, error) || !plant_seeds(s, error)) {
         simulation_free(s);
@@ -210,7 +211,8 @@ void simulation_free(Simulation *s)
     reach_free(s->reach);
     veins_clear(&s->veins);
     given_clear(&s->given);
-    zones_clear(&s->zones);
+    grid_clear(&s->grid);
+    crowds_clear(&s->crowds);
     blade_free(s->blade);
     g_free(s->place);
     g_free(s->birth);
@@ -219,17 +221,18 @@ void simulation_free(Simulation *s)
     g_free(s->near);
     g_free(s->near2);
     g_free(s->source);
+    g_free(s->zone);
     g_free(s->cell);
     g_free(s->arrival);
     g_free(s->paths.bits);
     g_free(s->waiting);
-    g_free(s->share);
-    g_free(s->pull);
+    g_free(s->pull_x);
+    g_free(s->pull_y);
+    g_free(s->ready);
     g_free(s->pulled);
     g_free(s->fresh);
     quadtree_clear(&s->young);
     boxtree_clear(&s->fresh_tree);
-    g_free(s->touched);
     g_free(s);
 }
 

@@ -47,8 +47,29 @@ void source_look(Simulation *s, uint32_t k)
     } else {
         urquhart_find(&s->source[k].hood, &s->cell[k], &f, s->place[k]);
     }
-    s->mark[k] &= (uint8_t)~MARK_ZONED;
+    s->mark[k] &= (uint8_t)~(MARK_ZONED | MARK_APART);
+    if (s->source)
+        s->mark[k] |= MARK_APART;
     source_weigh(s, k);
+}
+
+void source_set_apart(Simulation *s, uint32_t k)
+{
+    if (s->mark[k] & MARK_APART)
+        return;
+    s->source[k].hood.n = 1;
+    s->source[k].hood.m[0] = s->near[k];
+    s->near[k] = NEAR_APART;
+    s->near2[k] = -1.0;
+    s->mark[k] |= MARK_APART;
+}
+
+/* Can a source that is apart go with the crowd? */
+static bool is_plain(const Simulation *s, uint32_t k)
+{
+    const Source *src = &s->source[k];
+    return s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE && src->hood.n == 1 && !(src->tagged | src->spent) &&
+           !(s->mark[k] & (MARK_WITHIN | MARK_REACHED | MARK_ZONED));
 }
 
 /* The kill distance only shrinks (in the frame), so what is not within it stays so until the neighbours change. */
@@ -57,17 +78,18 @@ void source_weigh(Simulation *s, uint32_t k)
     double least2 = HUGE_VAL;
     for (uint32_t i = 0; i < source_members(s, k); i++)
         least2 = MIN(least2, vec_dist2(s->place[k], s->veins.pos[source_member(s, k, i)]));
-    s->mark[k] = (uint8_t)(least2 < kill2(s) ? s->mark[k] | MARK_WITHIN : s->mark[k] & ~MARK_WITHIN);
-}
-
-Box2 source_zone(const Simulation *s, uint32_t k)
-{
-    Eye eye;
-    Field f = source_field(s, k, &eye);
-    if (s->def.pattern == PATTERN_CLOSED)
-        return s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE ? hood_zone(&s->source[k].hood, &f, s->place[k])
-                                                              : urquhart_zone(&s->cell[k], &f, s->place[k]);
-    return s->near[k] == NO_POINT ? f.field : disc_box(s->place[k], s->near2[k]);
+    s->mark[k] = (uint8_t)(least2 < MAX(kill2(s), past2(s)) ? s->mark[k] | MARK_WITHIN : s->mark[k] & ~MARK_WITHIN);
+    if (s->def.pattern == PATTERN_OPEN) {
+        s->mark[k] = (uint8_t)(s->near[k] == NO_POINT ? s->mark[k] | MARK_APART : s->mark[k] & ~MARK_APART);
+    } else if (is_plain(s, k)) {
+        s->near[k] = s->source[k].hood.m[0];
+        s->near2[k] = least2;
+        s->mark[k] &= (uint8_t)~MARK_APART;
+    } else {
+        s->near[k] = NEAR_APART;
+        s->near2[k] = -1.0;
+        s->mark[k] |= MARK_APART;
+    }
 }
 
 /* ---- slots ---- */
@@ -78,8 +100,9 @@ Box2 source_zone(const Simulation *s, uint32_t k)
     DO(birth, true)                                                                \
     DO(mark, true)                                                                 \
     DO(material, s->blade->moving)                                                 \
-    DO(near, s->def.pattern == PATTERN_OPEN)                                       \
-    DO(near2, s->def.pattern == PATTERN_OPEN)                                      \
+    DO(near, true)                                                                 \
+    DO(near2, true)                                                                \
+    DO(zone, s->def.pattern == PATTERN_CLOSED)                                     \
     DO(source, s->def.pattern == PATTERN_CLOSED)                                   \
     DO(cell, s->def.pattern == PATTERN_CLOSED && s->def.neighbourhood == NEIGHBOURHOOD_URQUHART)
 
@@ -108,7 +131,7 @@ void source_add(Simulation *s, Vec2 p)
         s->source[k] = (Source){.arrived = NO_POINT};
     if (s->cell)
         s->cell[k] = (Cell){0};
-    zones_add(&s->zones, p, field_box(s));
+    grid_add(&s->grid, p);
     s->n_unsorted++;
     s->counts.placed++;
 }
@@ -128,30 +151,34 @@ void source_remove(Simulation *s, uint32_t k)
         cell_clear(&s->cell[k]);
     if (s->source)
         forget_arrivals(s, k);
-    if (s->near2)
-        s->near2[k] = -1.0;
+    s->near[k] = NO_POINT;
+    s->near2[k] = -1.0;
     s->place[k] = vec2((double)NAN, (double)NAN);
     s->mark[k] = MARK_IDLE;
-    zones_set(&s->zones, k, box_empty());
     s->n_removed++;
 }
 
 /* ---- order ---- */
 
-/* New order of the slots: living ones by cell, in a cell as they were. Returns how many there are. */
-static uint32_t *sorted_slots(const Simulation *s, uint32_t n)
+/* New order of the slots: living ones by cell, in a cell as they were. start[i] becomes where those of cell i begin, and after the last cell
+ * how many there are. */
+static uint32_t *sorted_slots(const Simulation *s, uint32_t *start)
 {
-    uint32_t cells = zones_cells(&s->zones);
-    uint32_t *start = g_new0(uint32_t, cells + 1), *slot = g_new(uint32_t, MAX(n, 1));
+    uint32_t cells = grid_cells(&s->grid), *slot = g_new(uint32_t, MAX(sources_alive(s), 1));
+    memset(start, 0, sizeof *start * (cells + 1));
     for (uint32_t k = 0; k < s->n_sources; k++)
         if (source_is_alive(s, k))
-            start[zones_cell(&s->zones, s->place[k]) + 1]++;
-    for (uint32_t c = 0; c < cells; c++)
-        start[c + 1] += start[c];
+            start[grid_cell(&s->grid, s->place[k])]++;
+    for (uint32_t c = 0, sum = 0; c <= cells; c++) {
+        uint32_t n = start[c];
+        start[c] = sum;
+        sum += n;
+    }
     for (uint32_t k = 0; k < s->n_sources; k++)
         if (source_is_alive(s, k))
-            slot[start[zones_cell(&s->zones, s->place[k])]++] = k;
-    g_free(start);
+            slot[start[grid_cell(&s->grid, s->place[k])]++] = k;
+    memmove(start + 1, start, sizeof *start * cells);
+    start[0] = 0;
     return slot;
 }
 
@@ -166,7 +193,7 @@ static void *permuted(void *array, gsize size, gsize cap, const uint32_t *slot, 
 
 void sources_sort(Simulation *s)
 {
-    uint32_t n = sources_alive(s), *slot = sorted_slots(s, n);
+    uint32_t n = sources_alive(s), *start = g_new(uint32_t, grid_cells(&s->grid) + 1), *slot = sorted_slots(s, start);
 #define PERMUTE(array, wanted) \
     if (wanted)                \
         s->array = permuted(s->array, sizeof *s->array, s->cap_sources, slot, n);
@@ -175,8 +202,10 @@ void sources_sort(Simulation *s)
     g_free(slot);
     s->n_sources = n;
     s->n_removed = s->n_unsorted = 0;
-    zones_reset(&s->zones);
-    bool open = s->def.pattern == PATTERN_OPEN;
+    s->drawn = false; /* pulled[] speaks of the old slots */
+    grid_reset(&s->grid);
     for (uint32_t k = 0; k < n; k++)
-        zones_add(&s->zones, s->place[k], open || (s->mark[k] & MARK_ZONED) ? source_zone(s, k) : field_box(s));
+        grid_add(&s->grid, s->place[k]);
+    crowds_build(s, start);
+    g_free(start);
 }

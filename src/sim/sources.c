@@ -13,49 +13,79 @@ static double vein_clearance(const Simulation *s)
 
 /* ---- placement ---- */
 
-/* Squares so small that two places in one are nearer to each other than the clearance ever is. */
+/* Squares of a quarter of the clearance, which the veins pass through: most darts are settled by the squares around them. */
 static void paths_prepare(Simulation *s)
 {
+    const double most = 1 << 27;
     Paths *t = &s->paths;
     Box2 b = field_box(s);
-    double side = 0.7 * MAX(s->def.birth_distance_veins, s->def.kill_distance); /* the unit shrinks, to 1 */
+    double side = 0.25 * MAX(s->def.birth_distance_veins, s->def.kill_distance); /* the unit shrinks, to 1 */
     double nx = (b.x1 - b.x0) / side + 1.0, ny = (b.y1 - b.y0) / side + 1.0;
-    if (s->blade->moving || !(nx * ny < 1 << 26))
+    if (s->blade->moving || !(nx * ny < most))
         return;
-    *t = (Paths){vec2(b.x0, b.y0), 1.0 / side, (uint32_t)nx, NULL, 0};
-    t->bits = g_new0(uint8_t, (gsize)(nx * ny) / 8 + (gsize)nx + 1);
-}
-
-static inline gsize path_square(const Paths *t, Vec2 p)
-{
-    return (gsize)((p.y - t->corner.y) * t->scale) * t->nx + (gsize)((p.x - t->corner.x) * t->scale);
+    *t = (Paths){vec2(b.x0, b.y0), 1.0 / side, (uint32_t)nx, (uint32_t)ny, NULL, 0, 0.0, 0, {0}};
+    t->bits = g_new0(uint8_t, (gsize)(nx * ny) / 8 + (gsize)nx + 8);
 }
 
 static void paths_update(Simulation *s)
 {
     Paths *t = &s->paths;
     for (; t->bits && t->n < s->veins.n; t->n++) {
-        gsize i = path_square(t, s->veins.pos[t->n]);
+        Vec2 p = s->veins.pos[t->n];
+        gsize i = (gsize)((p.y - t->corner.y) * t->scale) * t->nx + (gsize)((p.x - t->corner.x) * t->scale);
         t->bits[i / 8] |= (uint8_t)(1u << i % 8);
     }
+    t->radius = vein_clearance(s) * t->scale;
+    double sure = MIN(t->radius, PATHS_WIDEST) * (1.0 - 1e-9); /* squares wholly within this of all of the middle one */
+    for (t->rows = 0; t->rows + 2 <= sure; t->rows++)
+        t->reach[t->rows] = (int)sqrt(sure * sure - (t->rows + 1.0) * (t->rows + 1.0)) - 1;
 }
 
-static bool on_path(const Paths *t, Vec2 p)
+/* Whether a vein passes through one of the squares from x0 to x1 of row y, as far as they are squares; at most 25. */
+static bool row_is_passed(const Paths *t, int64_t x0, int64_t x1, int64_t y)
 {
-    if (!t->bits)
+    x0 = MAX(x0, 0);
+    x1 = MIN(x1, (int64_t)t->nx - 1);
+    if (y < 0 || y >= t->ny || x0 > x1)
         return false;
-    gsize i = path_square(t, p);
-    return t->bits[i / 8] >> i % 8 & 1;
+    gsize i = (gsize)y * t->nx + (gsize)x0;
+    const uint8_t *b = t->bits + i / 8;
+    uint32_t bits = ((uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24) >> i % 8;
+    return bits & ((1u << (x1 - x0 + 1)) - 1);
+}
+
+/* Whether a vein node lies nearer to p than the clearance: TRUE, FALSE, or unsure. */
+typedef enum { NEAR_NONE, NEAR_SOME, NEAR_UNSURE } PathsSay;
+
+static PathsSay paths_ask(const Simulation *s, Vec2 p)
+{
+    const Paths *t = &s->paths;
+    if (!t->bits)
+        return NEAR_UNSURE;
+    int64_t x = (int64_t)((p.x - t->corner.x) * t->scale), y = (int64_t)((p.y - t->corner.y) * t->scale);
+    for (int j = 0; j < t->rows; j++)
+        if (row_is_passed(t, x - t->reach[j], x + t->reach[j], y + j) || row_is_passed(t, x - t->reach[j], x + t->reach[j], y - j))
+            return NEAR_SOME;
+    if (t->radius + 1e-6 >= PATHS_WIDEST)
+        return NEAR_UNSURE;
+    int r = (int)(t->radius + 1e-6) + 1;
+    for (int j = -r; j <= r; j++)
+        if (row_is_passed(t, x - r, x + r, y + j))
+            return NEAR_UNSURE;
+    return NEAR_NONE;
 }
 
 static bool clear_of_sources(const Simulation *s, Vec2 p)
 {
-    return !zones_any_within(&s->zones, s->place, p, s->def.birth_distance_sources * s->blade->unit);
+    return !grid_any_within(&s->grid, s->place, p, s->def.birth_distance_sources * s->blade->unit);
 }
 
 static bool vacant(const Simulation *s, Vec2 p)
 {
-    return !on_path(&s->paths, p) && clear_of_sources(s, p) && !quadtree_any_within(&s->veins.tree, p, vein_clearance(s));
+    PathsSay say = paths_ask(s, p);
+    if (say == NEAR_SOME || !clear_of_sources(s, p))
+        return false;
+    return say == NEAR_NONE || !quadtree_any_within(&s->veins.tree, p, vein_clearance(s));
 }
 
 /* A point uniform in the blade, by rejection from its box; FALSE in the (practically impossible) case of a long run of misses. */
@@ -172,6 +202,7 @@ void sources_place(Simulation *s)
         place_waiting(s);
     pool_for(s->pool, s->n_sources - n.first, GRAIN, look_around, &n);
     s->counts.updates += s->n_sources - n.first;
+    crowds_add(s);
 }
 
 /* ---- sources known beforehand ---- */

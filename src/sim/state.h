@@ -6,7 +6,7 @@
 #include "geom/parallel.h"
 #include "geom/quadtree.h"
 #include "geom/reach.h"
-#include "geom/zones.h"
+#include "geom/grid.h"
 #include "sim/simulation.h"
 
 /* The veins so far. Node arrays are [cap]: 28 bytes a node, plus about 40 in the tree. */
@@ -23,18 +23,19 @@ typedef struct {
     GHashTable *joined; /* their pairs of nodes: two sources may be reached by the same two veins */
 } Veins;
 
-/* What slot k of the sources is besides its place. */
+/* What slot k of the sources is besides its place. 0: it pulls one node, near[k], and that is all there is to it. Most sources are like
+ * that: all of an open pattern, and those of a closed one that are ahead of the veins, as nearly all are where many are placed at once. */
 enum {
     MARK_IDLE = 1,    /* pulls nothing: removed, or (open) its node can't get nearer */
     MARK_WITHIN = 2,  /* a node may lie within the kill distance */
     MARK_REACHED = 4, /* closed: a vein came within the kill distance; from then on only tagged veins count */
-    MARK_ZONED = 8,   /* closed: the index holds the zone; as long as it does not, the source looks at every step's nodes */
-    MARK_GROWN = 16,  /* its zone has grown beyond the boxes above it */
+    MARK_ZONED = 8,   /* closed: zone[k] is known; as long as it is not, the source looks at every step's nodes */
+    MARK_APART = 16,  /* open: it sees no node yet; closed: source[k] says what it pulls, near[k] nothing */
 };
 
 /* A source of a closed pattern: 64 bytes, which looks wait for. Bit i of a mask speaks of member i of the hood. */
 typedef struct {
-    Hood hood;        /* nodes that it pulls */
+    Hood hood;        /* nodes that it pulls; out of date without MARK_APART */
     uint8_t tagged;   /* mask: this member belongs to a tagged vein */
     uint8_t spent;    /* mask: this member can't get nearer */
     uint32_t arrived; /* first of its arrivals, NO_POINT for none */
@@ -45,42 +46,63 @@ typedef struct {
     uint32_t node, next; /* next: of the same source, or of the unused ones; NO_POINT at the end */
 } Arrival;
 
-/* One pull of a source at a vein node, as the threads find it. */
-typedef struct {
-    Vec2 towards; /* of length 1 */
-    uint32_t node, source;
-    uint8_t member;
-} Draught;
-
-enum { SHARE = 256, SHARES = 16 };
-typedef struct {
-    uint32_t n, live; /* pulls; sources that pull */
-    Draught pull[SHARE * HOOD_MAX];
-} Share;
-
-/* The same in the list of its node. */
-typedef struct {
-    uint32_t source;
-    uint8_t member;
-    uint32_t next; /* of the same node, NO_POINT at the end */
-} Pull;
-
 /* A vein node that is pulled in this step: S(v) and the sum of eq. 1. */
 typedef struct {
     uint32_t node;
-    uint32_t first, last; /* its pulls */
-    uint32_t count;
+    uint32_t first, last; /* slots of the sources that pull it lie from here to there */
+    uint32_t count;       /* of the pulls */
     Vec2 sum;
     bool barred; /* no child is born where the sum points to */
 } Pulled;
 
-/* Squares of the frame that veins pass through: most darts that come down too near to a vein come down in one. */
+/* Sources beside each other in the blade: those of a cell, or of 4 x 4 smaller ones, so of some runs of slots. Which of a step's nodes can
+ * concern them at all is found for all of them together. */
+enum { CROWD_SIDE = 4 };
+typedef struct {
+    uint32_t first[CROWD_SIDE], last[CROWD_SIDE]; /* runs of slots, the last one not included */
+    uint32_t square;                              /* NO_POINT for newcomers */
+    Box2 place;                                   /* holds all of them */
+    uint32_t plain;                               /* how many are not apart, or were when it was last measured */
+    double most2;                                 /* not less than any near2 */
+    ZoneBox zone;                                 /* holds their zones */
+    bool restless;                                /* one that is apart has no zone */
+} Crowd;
+
+/* Crowds side by side, whose slots follow each other: what a thread takes up at a time. */
+typedef struct {
+    uint32_t first, last;             /* slots */
+    uint32_t first_crowd, last_crowd;
+} Band;
+
+/* 4 x 4 crowds, and the fresh nodes that may concern one of them. */
+enum { SQUARE_RIVALS = 256 };
+typedef struct {
+    Box2 place;
+    double most2;
+    uint32_t plain;
+    uint32_t n_nearest, n_rivals; /* above the limit: they did not fit, or it was not worth while */
+    uint32_t nearest[POINTS_MOST], rival[SQUARE_RIVALS];
+} Square;
+
+/* The sources in crowds, as of the last sorting and with what has come since. */
+typedef struct {
+    uint32_t n_crowds, cap_crowds, n_bands, cap_bands, n_squares, n_slots;
+    Crowd *crowd;
+    Band *band;
+    Square *square;
+    uint32_t longest; /* slots of a band */
+} Crowds;
+
+/* Squares of the frame that veins pass through. */
+enum { PATHS_WIDEST = 12 };
 typedef struct {
     Vec2 corner;
     double scale; /* squares a length */
-    uint32_t nx;
+    uint32_t nx, ny;
     uint8_t *bits; /* NULL: not kept */
     uint32_t n;    /* nodes entered */
+    double radius; /* the clearance of darts by now, in squares */
+    int rows, reach[PATHS_WIDEST]; /* squares wholly nearer than that: in rows 0 to rows - 1 away, up to reach away in the row */
 } Paths;
 
 /* The veins of SimulationDef.given. */
@@ -102,21 +124,22 @@ struct Simulation {
     Given given;
     Pool *pool;
     /* Sources, sorted by place from time to time so that neighbours in the blade are neighbours in memory. One that was removed keeps
-     * its slot, idle and nowhere (NaN), until the next sorting. Bytes a source, the index of zones included: 53 in an open pattern, 105
-     * in a closed one, and about 250 for an Urquhart cell. */
+     * its slot, idle and nowhere (NaN), until the next sorting. Bytes a source, the grid included: 37 in an open pattern, 117 in a closed
+     * one, and about 250 for an Urquhart cell. */
     Vec2 *place;      /* [n_sources] */
     uint32_t *birth;  /* [n_sources] step */
     uint8_t *mark;    /* [n_sources] MARK_… */
     Vec2 *material;   /* [n_sources] moving frames only */
-    uint32_t *near;   /* [n_sources] open: nearest node */
-    double *near2;    /* [n_sources] open: its squared distance; -1 for a removed source */
+    uint32_t *near;   /* [n_sources] the nearest node, NO_POINT for none; NEAR_APART: see source[k] */
+    double *near2;    /* [n_sources] its squared distance; -1 for a source that is removed or (closed) apart */
     Source *source;   /* [n_sources] closed */
+    ZoneBox *zone;    /* [n_sources] closed: no node outside can concern the source */
     Cell *cell;       /* [n_sources] closed, Urquhart neighbourhoods */
     Arrival *arrival;
     uint32_t n_arrivals, cap_arrivals, unused_arrival;
     uint32_t n_sources, cap_sources, n_removed, n_unsorted;
-    Zones zones;      /* of the sources; item = slot */
-    gint grown;       /* there is a MARK_GROWN; atomic */
+    Grid grid;        /* of the sources; item = slot */
+    Crowds crowds;
     Paths paths;
     double dart_carry;
     uint32_t misses; /* darts in a row that found no room */
@@ -124,16 +147,19 @@ struct Simulation {
     ListedSource *waiting;
     uint32_t n_waiting, next_waiting;
     /* work space of one step */
-    Share *share; /* [SHARES] */
-    Pull *pull;
+    double *pull_x, *pull_y; /* of the bands under way */
+    gint *ready;             /* [n_bands] atomic: a band waits to be settled */
+    gsize cap_pull;
+    uint32_t cap_ready;
     Pulled *pulled;
-    uint32_t n_pull, cap_pull, n_pulled, cap_pulled;
+    uint32_t n_pulled, cap_pulled;
+    uint32_t n_live; /* sources that pull */
+    bool drawn;      /* pulled[] speaks of the coming step already */
     uint32_t *fresh; /* nodes born in this step */
     uint32_t n_fresh, cap_fresh;
     Quadtree young;  /* the same, while they are being born */
     Boxtree fresh_tree;
-    uint32_t *touched, n_touched; /* squares of cells with sources that the fresh nodes may concern */
-    gint seen; /* sources that looked at this step's nodes; atomic */
+    gint seen; /* sources that looked at a step's nodes; atomic */
     SimulationCounts counts;
 };
 
@@ -158,19 +184,55 @@ bool sources_expected(const Simulation *s); /* darts may still find room */
 /* slots.c */
 void source_add(Simulation *s, Vec2 p);       /* its neighbourhood is not known yet */
 void source_look(Simulation *s, uint32_t k);  /* finds the neighbourhood of slot k from scratch */
-void source_weigh(Simulation *s, uint32_t k); /* MARK_WITHIN, from the neighbours */
+void source_set_apart(Simulation *s, uint32_t k); /* closed: from now on source[k] tells what it pulls */
+void source_weigh(Simulation *s, uint32_t k); /* sorts it out after its hood, or its one node, has changed: apart? MARK_WITHIN? */
 void source_remove(Simulation *s, uint32_t k);
-void sources_sort(Simulation *s);             /* drops removed slots, sorts by place, rebuilds s->zones */
+void sources_sort(Simulation *s);             /* drops removed slots, sorts by place, rebuilds the grid and the crowds */
 bool source_sees(const Simulation *s, uint32_t k, uint32_t node); /* no sinus is between them; needs s->reach */
 Box2 field_box(const Simulation *s);          /* holds all nodes that may ever come */
-Box2 source_zone(const Simulation *s, uint32_t k); /* outside it no new node can concern slot k */
+
+/* crowd.c */
+void crowds_clear(Crowds *c);
+void crowds_build(Simulation *s, const uint32_t *start); /* of sorted slots; those of cell i begin at start[i] */
+void crowds_add(Simulation *s);                          /* takes in newcomers, whose neighbourhoods are known */
+void crowd_part(Simulation *s, uint32_t k);              /* closed: slot k leaves the others and looks for itself from now on */
+void crowd_measure(const Simulation *s, Crowd *c);       /* renews what depends on its sources' neighbourhoods */
+void crowds_prepare(Simulation *s);                      /* shows fresh_tree to the squares */
+
+/* Nodes beside each other in memory; a pair of places out of sight follows. */
+enum { FEW = 1024 };
+typedef struct {
+    uint32_t n;
+    uint32_t v[FEW];
+    double x[FEW], y[FEW];
+} Few;
+
+/* The fresh nodes that a crowd looks at. */
+typedef struct {
+    Few nearest; /* those that may be nearest to a source, ascending */
+    Few rival;   /* closed: those that the nearest one need not exclude */
+} Sight;
+bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight); /* FALSE when there are too many, and each source must look for itself */
 
 /* look.c */
-void sources_update(Simulation *s); /* shows this step's nodes to the sources that they may concern */
+uint32_t crowd_look(Simulation *s, Crowd *c, Sight *room); /* shows the fresh nodes to a crowd; returns how many sources they may concern */
+
+/* pull.c; slots first … last-1, with x and y of what they do beside each other */
+void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, double *restrict x, double *restrict y); /* at near[]; of length 1 */
+void pulls_sum(Simulation *s, uint32_t first, uint32_t last, bool remove, const double *x, const double *y); /* fills pulled[] */
+
+/* A pull at a node, found again: the next one at p->node from slot `from` on that has not been let go of since. FALSE when there is none. */
+typedef struct {
+    uint32_t slot;
+    uint8_t member;
+} Pull;
+bool pulls_next(const Simulation *s, const Pulled *p, uint32_t from, Pull *pull);
 
 /* develop.c */
-uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there are */
-void sources_remove(Simulation *s);    /* tags, arrivals, anastomoses, removal */
+uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there were */
+bool source_remove_reached(Simulation *s, uint32_t k); /* returns whether it was */
+void sources_turn(Simulation *s, bool look, bool remove, bool pull); /* all sources look at the new nodes, go when reached, pull */
+void sources_remove(Simulation *s);    /* shows the new nodes to the sources; tags, arrivals, anastomoses, removal */
 
 static inline bool source_is_alive(const Simulation *s, uint32_t k) { return s->place[k].x == s->place[k].x; }
 static inline uint32_t sources_alive(const Simulation *s) { return s->n_sources - s->n_removed; }
@@ -181,15 +243,19 @@ static inline Box2 disc_box(Vec2 p, double r2)
     return box_grow((Box2){p.x, p.y, p.x, p.y}, sqrt(r2) * (1.0 + 1e-12));
 }
 
+enum { NEAR_APART = UINT32_MAX - 1 };
+
+static inline bool source_is_apart(const Simulation *s, uint32_t k) { return s->source && (s->mark[k] & MARK_APART); }
+
 /* Number of nodes that slot k pulls or might pull, and node i of them. */
 static inline uint32_t source_members(const Simulation *s, uint32_t k)
 {
-    return s->def.pattern == PATTERN_OPEN ? s->near[k] != NO_POINT : s->source[k].hood.n;
+    return source_is_apart(s, k) ? s->source[k].hood.n : s->near[k] != NO_POINT;
 }
 
 static inline uint32_t source_member(const Simulation *s, uint32_t k, uint32_t i)
 {
-    return s->def.pattern == PATTERN_OPEN ? s->near[k] : s->source[k].hood.m[i];
+    return source_is_apart(s, k) ? s->source[k].hood.m[i] : s->near[k];
 }
 
 /* The points as the source in slot k sees them. */

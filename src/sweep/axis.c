@@ -35,7 +35,7 @@ static bool holds_semicolons(const SweepField *f)
 static gboolean read_list(SweepAxis *axis, const char *text, const Spot *spot, GError **error)
 {
     const SweepField *f = axis->field;
-    bool bars = holds_semicolons(f);
+    bool may_be_empty = holds_semicolons(f), bars = may_be_empty || strchr(text, '|'); /* '|' is right everywhere */
     char **items = g_strsplit(text, bars ? "|" : ";", -1);
     guint n = g_strv_length(items);
     for (guint i = 0; i < n; i++)
@@ -49,8 +49,8 @@ static gboolean read_list(SweepAxis *axis, const char *text, const Spot *spot, G
     axis->cell = g_new0(char *, n + 1);
     for (axis->levels = 0; axis->levels < n && good; axis->levels += good) {
         const char *item = items[axis->levels];
-        if (!*item && !bars)
-            good = sweep_fail(spot, f->key, PARAM_ERROR_VALUE, error, ": an empty value between two ';'");
+        if (!*item && !may_be_empty)
+            good = sweep_fail(spot, f->key, PARAM_ERROR_VALUE, error, ": an empty value between two '%s'", bars ? "|" : ";");
         else
             good = (axis->cell[axis->levels] = sweep_value(spot, f, item, error)) != NULL;
     }

@@ -17,7 +17,8 @@
  * name      names of variants, in mode zip or as a column of the table.
  *
  * Values of a key:
- *   5; 10; 20              a list; by '|' for text, points and lists of numbers, whose values may hold a ';'. One value is the same for all
+ *   5; 10; 20              a list, by ';' or '|'; by '|' alone for text, points and lists of numbers, whose values may hold a ';'. One value is
+ *                          the same for all
  *   from 1 to 10 by 3      1, 4, 7, 10
  *   from 1 to 2 in 5       five values, evenly spaced: 1, 1.25, 1.5, 1.75, 2
  *   from 1 to 16 in 5 log  five values, each the same multiple of the one before: 1, 2, 4, 8, 16

@@ -1,19 +1,24 @@
-/* How growing scales, beside the plain twin and on the static workload.
+/* How growing scales, beside plain twins and on the static workload.
  *
- *     bench_grow [--quick] [PARAMS.ini]
+ *     bench_grow [--quick] [PARAMS.ini]…
+ *     bench_grow --sources FILE.csv
  *
- * Prints tables: one closed and one open model (Runions 2005, fig. 9e) and the static workload, each at three sizes or more,
- * with nodes, source updates, time for each of them and peak memory; the plain twin beside every size that it can grow in a
- * minute or two (its updates are the distances it takes, sources times nodes a step). Ends with 1 when the twin grows
- * another network, or when PARAMS.ini (poplar's), which is grown at full size, takes more than 200 bytes a vein node. Times
- * are of the growth loop alone, one thread and then all. --quick, of less than 20 seconds without a model, keeps to small
- * cases and leaves Urquhart's neighbourhoods out. */
+ * Prints tables. First the static workload from 10³ sources on: times, what a source update, a new node and a dart cost, and how many times
+ * as long the twin without an index takes (cached.h), whose time says how fast the machine is; on one thread, and what two make of it. Then
+ * a closed and an open model (Runions 2005, fig. 9e) beside the twin that keeps nothing (plain.h), with nodes, source updates, time for each
+ * of them and peak memory. Then the models given: poplar's and the life-size leaf's, at full size.
+ * --sources grows the static workload from points of your own, x,y in segments from the base, open and closed, on one thread: for comparing
+ * with other implementations on the same points.
+ * Ends with 1 when the plain twin grows another network, when threads do, or when a model takes more than 200 bytes a vein node. Times are of
+ * the growth loop alone. --quick, of less than 20 seconds without a model, keeps to small cases and leaves Urquhart's neighbourhoods out. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cached.h"
+#include "curve.h"
 #include "geom/outline.h"
 #include "lib/leaf.h"
 #include "lib/settings.h"
@@ -28,6 +33,7 @@ typedef struct {
     SimulationCounts counts;
     uint64_t graph; /* hash of the network, free of the order of birth within a step */
     long peak;      /* growth of the process's peak memory, bytes */
+    Costs costs;
 } Result;
 
 static long peak_memory(void)
@@ -67,7 +73,7 @@ static uint64_t graph_hash(const Network *net)
 
 /* ---- one run, in a process of its own so that its peak memory is its own ---- */
 
-typedef enum { WITH_INDEX, PLAIN } How; /* src/sim, or the twin */
+typedef enum { WITH_INDEX, PLAIN, CACHED, BY_PART } How; /* src/sim, or a twin; src/sim with a clock in it */
 
 static Result measure(const SimulationDef *def, How how)
 {
@@ -75,6 +81,15 @@ static Result measure(const SimulationDef *def, How how)
     long before = peak_memory();
     gint64 start = g_get_monotonic_time();
     Network *net;
+    if (how == BY_PART) {
+        r.costs = curve_costs(def);
+        return r;
+    }
+    if (how == CACHED) {
+        cached_grow(def, &r.counts);
+        r.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+        return r;
+    }
     if (how == PLAIN) {
         net = plain_grow(def, &r.counts);
     } else {
@@ -205,29 +220,79 @@ static gboolean bench_sizes(gboolean quick)
     return same;
 }
 
+/* One case of the static workload; `twin` seconds of the twin for so many sources, 0 when it was not asked. */
+static gboolean static_case(const Workload *w, const char *name, double twin)
+{
+    SimulationDef d = w->def;
+    d.threads = 1;
+    Result one = run(&d, WITH_INDEX), part = run(&d, BY_PART);
+    d.threads = 2;
+    Result two = run(&d, WITH_INDEX);
+    const SimulationCounts *c = &one.counts;
+    char *times = twin > 0.0 ? g_strdup_printf("%.1f", twin / one.seconds) : g_strdup("");
+    printf("| %-14s | %8.3f | %5u | %8u | %5u | %9.2e | %9.1f | %7.2f | %7.2f | %7.1f | %8s | %7.2f |\n", name, one.seconds, c->step, c->nodes,
+           c->sources, (double)c->updates, part.costs.update * 1e9, part.costs.node * 1e6, part.costs.dart * 1e6, (double)one.peak * 1e-6, times,
+           one.seconds / two.seconds);
+    fflush(stdout);
+    g_free(times);
+    return one.graph == two.graph;
+}
+
+static void static_heading(const char *title)
+{
+    printf("\n%s\n\n| %-14s | %8s | %5s | %8s | %5s | %9s | %9s | %7s | %7s | %7s | %8s | %7s |\n", title, "case", "seconds", "steps", "nodes",
+           "left", "updates", "ns/update", "us/node", "us/dart", "peak MB", "twin / s", "1 / 2 t");
+    printf("| -------------- | -------: | ----: | -------: | ----: | --------: | --------: | ------: | ------: | ------: | -------: | "
+           "------: |\n");
+}
+
+/* The twin needs a minute for 10⁵ sources. */
+static double twin_case(const Workload *w, const char *name)
+{
+    Result r = run(&w->def, CACHED);
+    printf("| %-14s | %8.3f | %5u | %8u | %5u | %9s | %9s | %7s | %7s | %7s | %8s | %7s |\n", name, r.seconds, r.counts.step, r.counts.nodes,
+           r.counts.sources, "", "", "", "", "", "1", "");
+    fflush(stdout);
+    return r.seconds;
+}
+
+/* Seeds 1001, 1002, … for 10³, 10⁴, … sources. */
 static gboolean bench_static(gboolean quick)
 {
+    enum { MOST = 4 };
     gboolean same = TRUE;
-    heading("Static workload (seeds 1001, 1002, 1003)");
+    double twin[MOST] = {0};
+    static_heading("Static workload; twin / s: times as long as that the twin takes; 1 / 2 t: one thread to two");
     for (int p = 0; p < 2; p++)
-        for (uint32_t i = 0, n = quick ? 250 : 1000; i < 3; i++, n *= 10) {
+        for (uint32_t i = 0, n = quick ? 250 : 1000; i < (quick ? 3u : MOST); i++, n *= 10) {
             Workload *w = workload_new(n, 1001 + i, p ? PATTERN_CLOSED : PATTERN_OPEN);
             char *name = g_strdup_printf("%s %u", p ? "closed" : "open", n);
-            w->def.threads = 1;
-            if (i == 0) {
-                same &= beside_plain(name, w->def);
-            } else {
-                Result r = run(&w->def, WITH_INDEX);
-                row(name, &r);
-                w->def.threads = 0;
-                char *all = g_strdup_printf("%s, all threads", name);
-                r = run(&w->def, WITH_INDEX);
-                row(all, &r);
-                g_free(all);
-            }
+            if (p == 0 && n <= 100000)
+                twin[i] = twin_case(w, "twin");
+            same &= static_case(w, name, twin[i]);
             g_free(name);
             workload_free(w);
         }
+    return same;
+}
+
+static gboolean bench_sources(const char *path)
+{
+    GError *error = NULL;
+    Workload *w = workload_read(path, &error);
+    if (!w) {
+        fprintf(stderr, "bench_grow: %s\n", error->message);
+        g_error_free(error);
+        return FALSE;
+    }
+    gboolean same = TRUE;
+    static_heading(path);
+    double twin = w->n <= 100000 ? twin_case(w, "twin, open") : 0.0;
+    for (int p = 0; p < 2; p++) {
+        w->def.pattern = p ? PATTERN_CLOSED : PATTERN_OPEN;
+        same &= static_case(w, p ? "closed" : "open", twin);
+    }
+    workload_free(w);
     return same;
 }
 
@@ -247,13 +312,14 @@ static gboolean bench_model(const char *path, gboolean quick)
     GError *error = NULL;
     Params *p = params_load(path, &error);
     Vec2 base, tip;
-    Polygon *leaf = p ? settings_outline(p, &base, &tip, &error) : NULL;
+    Polygon *leaf = p ? settings_outline(p, NULL, &base, &tip, &error) : NULL;
     if (!leaf) {
         fprintf(stderr, "%s\n", error->message);
         return FALSE;
     }
     heading(path);
-    for (int n = 0; n < (quick ? 1 : 2); n++)
+    gboolean large = params_number(p, PARAM_GROWTH_FINAL_LENGTH) > 5000; /* Urquhart's neighbourhoods would take too long */
+    for (int n = 0; n < (quick || large ? 1 : 2); n++)
         for (unsigned threads = 1; threads != 2; threads = threads ? 0 : 2) { /* one, then all (0) */
             SimulationDef d;
             if (!settings_simulation(p, leaf, 1, threads, &d, &error)) {
@@ -277,17 +343,19 @@ static gboolean bench_model(const char *path, gboolean quick)
 int main(int argc, char **argv)
 {
     gboolean quick = FALSE, ok = TRUE;
-    const char *model = NULL;
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--quick") == 0)
-            quick = TRUE;
-        else
-            model = argv[i];
+    int model = 1;
+    if (argc == 3 && strcmp(argv[1], "--sources") == 0)
+        return bench_sources(argv[2]) ? 0 : 1;
+    if (argc > 1 && strcmp(argv[1], "--quick") == 0)
+        quick = TRUE, model++;
+    if (argc > model && argv[model][0] == '-') {
+        fprintf(stderr, "usage: bench_grow [--quick] [PARAMS.ini]... | --sources FILE.csv\n");
+        return 2;
     }
     ok &= bench_static(quick);
     ok &= bench_sizes(quick);
-    if (model)
-        ok &= bench_model(model, quick);
+    for (; model < argc; model++)
+        ok &= bench_model(argv[model], quick);
     if (!ok)
         fprintf(stderr, "bench_grow: another network, too much memory, or a run failed\n");
     return ok ? 0 : 1;

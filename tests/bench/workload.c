@@ -1,5 +1,7 @@
 #include "workload.h"
 
+#include "lib/settings.h"
+
 /* splitmix64, 53 bits of it. */
 static double next(uint64_t *state)
 {
@@ -57,14 +59,15 @@ static Polygon *ellipse(void)
     return polygon_new(v, N);
 }
 
-Workload *workload_new(uint32_t n, uint64_t seed, Pattern pattern)
+/* Half of the shorter axis of the ellipse that n sources fill. */
+static double half_width(uint32_t n)
 {
     const double spacing = 5.0;
-    Workload *w = g_new0(Workload, 1);
-    double b = sqrt(n * spacing * spacing / (2.0 * G_PI));
-    w->n = n;
-    w->source = g_new(ListedSource, n);
-    throw_darts(w, seed, b);
+    return sqrt(n * spacing * spacing / (2.0 * G_PI));
+}
+
+static void define(Workload *w, Pattern pattern, double b)
+{
     w->leaf = ellipse();
     w->def = simulation_def_default();
     w->def.leaf = w->leaf;
@@ -72,10 +75,47 @@ Workload *workload_new(uint32_t n, uint64_t seed, Pattern pattern)
     w->def.growth.initial_length = 4.0 * b;
     w->def.placement = PLACEMENT_LIST;
     w->def.list = w->source;
-    w->def.n_list = n;
+    w->def.n_list = w->n;
     w->def.pattern = pattern;
     w->def.kill_distance = 2.0;
     w->def.sinus_depth = 10.0;
+}
+
+Workload *workload_new(uint32_t n, uint64_t seed, Pattern pattern)
+{
+    Workload *w = g_new0(Workload, 1);
+    w->n = n;
+    w->source = g_new(ListedSource, n);
+    throw_darts(w, seed, half_width(n));
+    define(w, pattern, half_width(n));
+    return w;
+}
+
+Workload *workload_read(const char *path, GError **error)
+{
+    Workload *w = g_new0(Workload, 1);
+    if (!source_list_read(path, &w->source, &w->n, error)) {
+        g_free(w);
+        return NULL;
+    }
+    double b = half_width(MAX(w->n, 1)), most = 1e3 * b;
+    for (uint32_t i = 0; i < w->n && b < most; i++) { /* wide enough for all */
+        Vec2 p = w->source[i].pos;
+        w->source[i].step = 0;
+        while (b < most && p.x * p.x / (b * b) + (p.y / (2.0 * b) - 1.0) * (p.y / (2.0 * b) - 1.0) > 1.000001)
+            b *= 1.05;
+        if (b >= most)
+            g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
+                        "%s: source %u at %g,%g lies in no ellipse that stands on the base at 0,0, tip along +y", path, i + 1, p.x, p.y);
+    }
+    if (w->n == 0)
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES, "%s: holds no source", path);
+    if (w->n == 0 || b >= most) {
+        g_free(w->source);
+        g_free(w);
+        return NULL;
+    }
+    define(w, PATTERN_OPEN, b);
     return w;
 }
 

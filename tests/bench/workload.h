@@ -14,6 +14,9 @@ typedef struct {
 } Workload;
 
 Workload *workload_new(uint32_t n, uint64_t seed, Pattern pattern);
+/* The same from points of a file: lines x,y in segments from the base, the tip along +y. NULL and the error when it can't be read or the
+ * points lie in no 2:1 ellipse that stands on the base. */
+Workload *workload_read(const char *path, GError **error);
 void workload_free(Workload *w);
 
 #endif

@@ -21,7 +21,7 @@ static Drawing *read_bytes(const char *text, gsize length, GError **error)
     g_close(file, NULL);
     g_file_set_contents_full(name, text, (gssize)length, G_FILE_SET_CONTENTS_NONE, 0600, &trouble);
     g_assert_no_error(trouble);
-    Drawing *d = drawing_read_svg(name, 0.01, error);
+    Drawing *d = drawing_read_svg(name, 0.01, NULL, error);
     if (!d) /* every complaint names the file */
         g_assert_nonnull(strstr((*error)->message, name));
     g_unlink(name);
@@ -201,6 +201,67 @@ static void test_widths(void)
     WIDE("<svg><path transform='scale(0,1)' stroke-width='3' d='M0 0 1 1'/></svg>", 1, 0);
 }
 
+/* As Illustrator and Inkscape write styles of several elements at once. */
+static void test_sheets(void)
+{
+    WIDE("<svg><style>.a{stroke-width:3} .b { stroke-width : 4px ; fill:none }</style><path class='a' d='M0 0 1 1'/><path class='x b' d='M0 0 1 1'/>"
+         "<path class='ab' d='M0 0 1 1'/></svg>", 3, 3, 4, 0);
+    WIDE("<svg><path class='a' d='M0 0 1 1'/><defs><style type='text/css'><![CDATA[ .a{stroke-width:3;} ]]></style></defs></svg>", 1, 3);
+    WIDE("<svg><style>/* .p{stroke-width:9} */ @import url(x); @media print { path { stroke-width: 8 } } .st0,\n.st1{stroke-width:2}</style>"
+         "<g class='st1'>" P "</g><g stroke-width='1'><path class='st0' d='M0 0 1 1'/></g></svg>", 2, 2, 2);
+    /* ids before classes before names; style attributes before all, attributes after all; the last of equals; !important */
+    WIDE("<svg><style>#q{stroke-width:5} path.a{stroke-width:4} .a{stroke-width:3} path{stroke-width:2} *{stroke-width:1} .a.b{stroke-width:6}</style>"
+         "<path id='q' class='a' d='M0 0 1 1' stroke-width='9'/><path class='a' d='M0 0 1 1'/>" P "<line x2='1'/><path class='b a' d='M0 0 1 1'/>"
+         "<path class='a' style='stroke-width:7' d='M0 0 1 1'/></svg>", 6, 5, 4, 2, 1, 6, 7);
+    WIDE("<svg><style>.a{stroke-width:3 !important} .a{stroke-width:4}.c{stroke-width:1}.c{stroke-width:2}</style>"
+         "<path class='a' style='stroke-width:7' d='M0 0 1 1'/><path class='a' style='stroke-width:7!important' d='M0 0 1 1'/><path class='c' d='M0 0 1 1'/></svg>",
+         3, 3, 7, 2);
+    WIDE("<svg><style>g > path, path:hover, path[id], g path {stroke-width:3} } { ; .a</style><g>" P "</g></svg>", 1, 0); /* not read */
+    WIDE("<svg><style>.a{stroke-width:3</style><path class='a' d='M0 0 1 1'/></svg>", 1, 3);
+    ALL("<svg><style>.off{display:none}</style><g class='off'>" P "</g><path class='off' d='M0 0 1 1'/>" P "</svg>", 1, 0);
+    /* visibility is inherited, and may be taken back; display is not */
+    ALL("<svg><g visibility='hidden'>" P "<path style='visibility:visible' d='M0 0 1 1'/></g></svg>", 1, 0);
+    ALL("<svg><style>.h{visibility:collapse}</style><g style='visibility:hidden'><g style='visibility:inherit'>" P "</g></g><path class='h' d='M0 0 1 1'/>" P
+        "</svg>", 1, 0);
+    ALL("<svg><g display='none'><path style='visibility:visible;display:inline' d='M0 0 1 1'/></g>" P "</svg>", 1, 0);
+}
+
+/* A layer in which nothing is drawn says that there are no veins. */
+static void test_empty(void)
+{
+    ALL("<svg><g id='veins'/></svg>", 0, 0);
+    ALL("<svg>" P "<g inkscape:label='Veins'><g id='primary'><title>none</title></g></g></svg>", 0, 0);
+    ALL("<svg><g id='veins'><path d=''/></g></svg>", 0, 0);
+}
+
+static Vec2 origin_of(const char *inner)
+{
+    char *text = g_strdup_printf("<svg><g transform='translate(7,3)'>%s</g></svg>", inner);
+    Drawing *d = read_text(text);
+    g_assert_cmpuint(d->n, ==, 1);
+    Vec2 p = d->vein[0].point[0];
+    drawing_free(d);
+    g_free(text);
+    return p;
+}
+
+/* A drawing in the drawing has a place and a scale of its own. */
+static void test_inner(void)
+{
+    Vec2 a = origin_of("<svg x='10' y='20' width='40' height='30' viewBox='5 5 10 10'><path d='M5 5 6 6'/></svg>"); /* meet: 30 × 30 in the middle */
+    NEAR(a.x, 7 + 15);
+    NEAR(a.y, -23);
+    a = origin_of("<svg x='10' y='20' width='40' height='30' viewBox='5 5 10 10' preserveAspectRatio='none'><path d='M6 6 7 7'/></svg>");
+    NEAR(a.x, 17 + 4);
+    NEAR(a.y, -26);
+    a = origin_of("<svg x='10' y='20'><path d='M5 5 6 6'/></svg>");
+    NEAR(a.x, 22);
+    NEAR(a.y, -28);
+    a = origin_of("<svg viewBox='5 5 10 10'><path d='M5 5 6 6'/></svg>"); /* as large as what it is in, which is not known */
+    NEAR(a.x, 12);
+    NEAR(a.y, -8);
+}
+
 /* Fits the outline of the same file. */
 static void test_outline(void)
 {
@@ -211,7 +272,7 @@ static void test_outline(void)
     SvgShape shape;
     g_assert_true(svgfile_read(name, &shape, NULL));
     g_assert_true(shape.has_base && shape.base.x == 10 && shape.base.y == -120);
-    Drawing *d = drawing_read_svg(name, 0.01, NULL);
+    Drawing *d = drawing_read_svg(name, 0.01, NULL, NULL);
     NEAR(vec_dist(d->vein[0].point[0], shape.base), 0.0);
     drawing_free(d);
     svgshape_clear(&shape);
@@ -231,10 +292,12 @@ static void check_error(const char *text, ImportErrorCode code, const char *says
 
 static void test_errors(void)
 {
-    check_error("<svg></svg>", IMPORT_ERROR_GRAPH, "no open path in it");
-    check_error("<svg>" P "<g id='veins'><path d='M0 0 1 0 1 1z'/></g></svg>", IMPORT_ERROR_GRAPH, "in the layer or group \"veins\"");
+    check_error("<svg></svg>", IMPORT_ERROR_GRAPH, "neither a layer \"veins\" nor an open path that shows");
+    check_error("<svg>" P "<g id='veins'><path d='M0 0 1 0 1 1z'/></g></svg>", IMPORT_ERROR_GRAPH, "(1 object is there");
     check_error("<svg><g id='veins' style='display:none'>" P "</g></svg>", IMPORT_ERROR_GRAPH, "hidden");
     check_error("<svg>\n<g id='veins'>\n<path inkscape:label='lat' d='M0 0 q'/></g></svg>", IMPORT_ERROR_SYNTAX, "line 3: path 'lat': at character 7");
+    check_error("<svg><g id='veins'><rect width='3' height='3'/><text>x</text></g></svg>", IMPORT_ERROR_GRAPH, "(2 objects are there");
+    check_error("<svg><g id='veins'>" P "<use id='u7' xlink:href='#x'/></g></svg>", IMPORT_ERROR_SYNTAX, "use 'u7' among the veins is a clone");
     check_error("<svg><path id='p1' d='M0 0 1 x'/></svg>", IMPORT_ERROR_SYNTAX, "path 'p1'");
     check_error("<svg>" P "<polyline points='1,2 3'/></svg>", IMPORT_ERROR_SYNTAX, "polyline 2");
     check_error("<svg><g transform='turn(3)'>" P "</g></svg>", IMPORT_ERROR_SYNTAX, "transform");
@@ -245,7 +308,7 @@ static void test_errors(void)
     check_error("", IMPORT_ERROR_SYNTAX, "not an SVG file");
     check_error("\x89PNG", IMPORT_ERROR_SYNTAX, "not an SVG file");
     GError *error = NULL;
-    g_assert_null(drawing_read_svg("/no/such/file.svg", 0.01, &error));
+    g_assert_null(drawing_read_svg("/no/such/file.svg", 0.01, NULL, &error));
     g_assert_error(error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
     g_error_free(error);
 }
@@ -257,7 +320,8 @@ static uint32_t dice(uint32_t i, uint32_t k, uint32_t sides) { return random_blo
 static GString *mutated(const char *text, gsize length, uint32_t i)
 {
     static const char *const piece[] = {"<g>", "</g>", "\"", "<", "/>", "e99", "-", "z", "M", "nan", "transform=\"scale(0)\"", "style=\"stroke-width:1e50\"",
-                                        "id=\"veins\"", "\xff", "&#10;", "A 1 1 0 0 0", "1e-60", "C", ";", ":", "!"};
+                                        "id=\"veins\"", "\xff", "&#10;", "A 1 1 0 0 0", "1e-60", "C", ";", ":", "!",
+                                        "<style>.a{stroke-width:3}", "</style>", "class=\"a\"", "visibility=\"hidden\"", "<svg viewBox=\"0 0 3 4\" width=\"1\" height=\"9\">"};
     GString *s = g_string_new_len(text, (gssize)length);
     for (uint32_t k = 0, n = 1 + dice(i, 0, 5); k < n && s->len > 0; k++) {
         gsize at = dice(i, 4 * k + 1, (uint32_t)s->len), run = MIN(1 + dice(i, 4 * k + 2, 40), s->len - at);
@@ -339,6 +403,9 @@ int main(int argc, char **argv)
     g_test_add_func("/drawing-svg/nesting", test_nesting);
     g_test_add_func("/drawing-svg/which", test_which);
     g_test_add_func("/drawing-svg/widths", test_widths);
+    g_test_add_func("/drawing-svg/sheets", test_sheets);
+    g_test_add_func("/drawing-svg/empty", test_empty);
+    g_test_add_func("/drawing-svg/inner", test_inner);
     g_test_add_func("/drawing-svg/outline", test_outline);
     g_test_add_func("/drawing-svg/errors", test_errors);
     g_test_add_func("/drawing-svg/broken", test_broken);

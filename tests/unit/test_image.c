@@ -7,10 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <zlib.h>
 
 #include "geom/dmath.h"
 #include "geom/parallel.h"
 #include "geom/random.h"
+#include "image/deflate.h"
 #include "image/encode.h"
 #include "image/file.h"
 
@@ -229,6 +231,20 @@ static void test_half(void)
     g_assert_cmpint(encode_half(65520.0f), ==, 0x7C00);
     g_assert_cmpint(encode_half(NAN) & 0x7C00, ==, 0x7C00);
     g_assert_cmpint(encode_half(NAN) & 0x3FF, !=, 0);
+    float in[1000];
+    uint16_t out[1001];
+    for (uint32_t n = 0; n < 1000; n += n < 20 ? 1 : 97) { /* rows of them, with stretches of one value */
+        for (uint32_t i = 0; i < n; i++) {
+            double v[2];
+            random_pair(5, 0, n, i, v);
+            in[i] = i / 200 % 2 ? -0.3f : (float)ldexp(v[0] - 0.5, (int)(v[1] * 60.0) - 30);
+        }
+        out[n] = 4711;
+        encode_halves(in, n, out);
+        for (uint32_t i = 0; i < n; i++)
+            g_assert_cmpint(out[i], ==, encode_half(in[i]));
+        g_assert_cmpint(out[n], ==, 4711);
+    }
 }
 
 /* Reads one channel of an EXR file as floats. */
@@ -341,6 +357,110 @@ static void test_same_bytes(void)
         g_free(data[1]);
     }
     plane_free(p);
+}
+
+/* Bytes of several kinds: noise, one value, runs, text that repeats from afar. */
+static void fill_bytes(uint8_t *out, uint32_t n, int kind)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double v[2];
+        random_pair(3, 0, (uint32_t)kind, i, v);
+        out[i] = kind == 0 ? (uint8_t)(v[0] * 256.0) : kind == 1 ? 77 : kind == 2 ? (v[0] < 0.05 || i == 0 ? (uint8_t)(v[1] * 9.0) : out[i - 1])
+                 : i >= 30000 ? out[i - 30000] : (uint8_t)(v[0] * 30.0);
+    }
+}
+
+static void assert_inflates(const uint8_t *packed, gsize n_packed, const uint8_t *want, uint32_t n)
+{
+    uint8_t *got = g_malloc(n + 1);
+    uLongf length = n + 1;
+    g_assert_cmpint(uncompress(got, &length, packed, n_packed), ==, Z_OK);
+    g_assert_cmpuint(length, ==, n);
+    g_assert_true(memcmp(got, want, n) == 0);
+    g_free(got);
+}
+
+/* What zlib makes of compressed bytes is what they were; noise is said not to fit. */
+static void test_deflate(void)
+{
+    static const uint32_t size[] = {1, 2, 3, 31, 257, 258, 259, 1000, 32767, 32768, 32769, 65535, 65536, 70001, 400000, 1500000};
+    enum { MOST = 1500000 };
+    uint8_t *in = g_malloc(MOST), *out = g_malloc(2 * MOST);
+    Deflate *d = deflate_new();
+    for (int kind = 0; kind < 4; kind++) {
+        fill_bytes(in, MOST, kind);
+        for (gsize i = 0; i < G_N_ELEMENTS(size); i++) {
+            uint32_t n = size[i];
+            gsize packed = deflate_whole(d, in, n, out, n + n / 8 + 100);
+            assert_inflates(out, packed, in, n);
+            gsize less = deflate_whole(d, in, n, out, n - 1);
+            if (kind == 0 || n < 4)
+                g_assert_cmpuint(less, ==, 0);
+            else if (less > 0)
+                assert_inflates(out, less, in, n);
+            g_assert_true(n < 1000 || kind == 0 || less > 0);
+        }
+    }
+    deflate_free(d);
+    g_free(in);
+    g_free(out);
+}
+
+/* The same given in pieces and taken in pieces, of all sizes. */
+static void test_deflate_pieces(void)
+{
+    static const uint32_t given[] = {1, 100, 4097, 65536, 300000}, taken[] = {1, 7, 1000, 65536};
+    enum { MOST = 300000 };
+    uint8_t *in = g_malloc(MOST), *out = g_malloc(2 * MOST);
+    Deflate *d = deflate_new();
+    for (int kind = 0; kind < 4; kind++)
+        for (int g = 0; g < 5; g++)
+            for (int t = 0; t < 4; t++) {
+                uint32_t n = MIN(MOST, 3000 * given[g]);
+                gsize packed = 0, got;
+                fill_bytes(in, n, kind);
+                deflate_begin(d);
+                for (uint32_t at = 0; at <= n; at += given[g]) { /* the last piece is empty when pieces fit in */
+                    uint32_t piece = MIN(given[g], n - at);
+                    deflate_give(d, in + at, piece, at + piece == n && piece < given[g]);
+                    do {
+                        got = deflate_take(d, out + packed, taken[t]);
+                        packed += got;
+                        g_assert_cmpuint(packed, <=, 2 * MOST - 65536);
+                    } while (got == taken[t]);
+                }
+                assert_inflates(out, packed, in, n);
+            }
+    deflate_free(d);
+    g_free(in);
+    g_free(out);
+}
+
+/* Files with many IDAT chunks, of noise, of one value, and of one and then the other. */
+static void test_large(void)
+{
+    for (int kind = 0; kind < 3; kind++) {
+        Plane *p = noise_plane(700, 333, 1, PLANE_DATA);
+        for (gsize i = 0; kind > 0 && i < 700 * 333; i++)
+            if (kind == 1 || i % 1000 < 500)
+                p->px[i] = 0.25f;
+        char *path = file("large");
+        g_assert_true(image_write_png(p, path, 16, NULL, NULL));
+        Picture r = read_png(path);
+        for (gsize i = 0; i < 700 * 333; i++)
+            g_assert_cmpfloat(fabs(r.level[i] / 65535.0 - (double)p->px[i]), <=, 0.5001 / 65535.0);
+        picture_clear(&r);
+        for (int half = 0; half < 2; half++) { /* noise doesn't compress: chunks stay as they are */
+            g_assert_true(image_write_exr(p, path, half, NULL, NULL));
+            float *px = read_exr(path, "Y", 700, 333, NULL, NULL);
+            for (gsize i = 0; i < 700 * 333; i++)
+                g_assert_cmpfloat(px[i], ==, half ? (float)half_value(encode_half(p->px[i])) : p->px[i]);
+            g_free(px);
+        }
+        g_remove(path);
+        g_free(path);
+        plane_free(p);
+    }
 }
 
 /* Part of a plane's rows as a plane, whose pixels are borrowed. */
@@ -459,6 +579,9 @@ int main(int argc, char **argv)
     g_test_add_func("/image/half", test_half);
     g_test_add_func("/image/exr/pixels", test_exr);
     g_test_add_func("/image/exr/labels", test_exr_labels);
+    g_test_add_func("/image/deflate/whole", test_deflate);
+    g_test_add_func("/image/deflate/pieces", test_deflate_pieces);
+    g_test_add_func("/image/large", test_large);
     g_test_add_func("/image/same-bytes", test_same_bytes);
     g_test_add_func("/image/banded", test_banded);
     g_test_add_func("/image/failures", test_failures);

@@ -6,7 +6,7 @@
 
 #include "geom/neighbours.h"
 #include "geom/random.h"
-#include "geom/zones.h"
+#include "geom/grid.h"
 #include "plain_hood.h"
 
 /* ---- point sets ---- */
@@ -513,13 +513,20 @@ static void test_quadtree(void)
 
 /* ---- box tree ---- */
 
-/* Every point that is nearest to one of some places in the box must be among those found, in ascending order. */
-static void check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, double bound2)
+enum { MOST = POINTS_MOST };
+
+/* Every point that is nearest to one of some places in the box must be among those found. Returns how many there are. */
+static uint32_t check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, double bound2, uint32_t *out)
 {
-    uint32_t out[16], found = boxtree_nearest_to(t, pos, b, bound2, out, 16);
-    if (found > 16)
-        return;
-    for (uint32_t k = 1; k < found; k++)
+    uint32_t near[MOST], found = boxtree_near(t, pos, b, bound2, near, MOST), tight = 0;
+    if (found > MOST)
+        return found;
+    if (found)
+        g_assert_cmpuint(boxtree_near(t, pos, b, bound2, out, found - 1), ==, found);
+    qsort(near, found, sizeof *near, by_index);
+    tight = points_nearest_to(pos, near, found, b, bound2, out);
+    g_assert_cmpuint(tight, <=, found);
+    for (uint32_t k = 1; k < tight; k++)
         g_assert_cmpuint(out[k - 1], <, out[k]);
     for (int i = 0; i <= 4; i++)
         for (int j = 0; j <= 4; j++) {
@@ -530,36 +537,50 @@ static void check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2
                 if (plain_dist2(pos[v], p) < plain_dist2(pos[best], p))
                     best = v;
             }
-            if (plain_dist2(pos[best], p) < bound2)
-                g_assert_nonnull(bsearch(&best, out, found, sizeof *out, by_index));
+            if (n && plain_dist2(pos[best], p) < bound2)
+                g_assert_nonnull(bsearch(&best, out, tight, sizeof *out, by_index));
         }
+    g_assert_cmpuint(points_nearest_to(pos, near, found, b, bound2, near), ==, tight); /* in place */
+    g_assert_cmpmem(near, (int)(sizeof *near * tight), out, (int)(sizeof *out * tight));
+    return tight;
 }
 
-/* Every point that is nearer to a corner of `a` than to one of `b` must be among those found, and none that is far behind `b`. */
-static void check_nearer(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 a, Box2 b)
+/* Every point that the one nearest to some place in the box does not exclude there must be among the rivals, unless another point does and
+ * may. */
+static uint32_t check_rivals(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, const uint32_t *near, uint32_t n_near, bool alone)
 {
-    uint32_t *out = g_new(uint32_t, n), found = boxtree_nearer(t, pos, a, b, out, n);
+    uint32_t *out = g_new(uint32_t, n), *list = g_new(uint32_t, n);
+    uint32_t found = boxtree_rivals(t, pos, b, near, n_near, alone, out, n);
     g_assert_cmpuint(found, <=, n);
-    qsort(out, found, sizeof *out, by_index);
-    for (uint32_t k = 0; k < n; k++) {
-        uint32_t v = 2 * k + 1; /* points are the odd ones */
-        double near2 = HUGE_VAL, far2 = 0.0, least2 = box_dist2(a, pos[v]);
-        for (int c = 0; c < 4; c++) {
-            near2 = MIN(near2, plain_dist2(pos[v], vec2(c & 1 ? a.x1 : a.x0, c & 2 ? a.y1 : a.y0)));
-            far2 = MAX(far2, plain_dist2(pos[v], vec2(c & 1 ? b.x1 : b.x0, c & 2 ? b.y1 : b.y0)));
-        }
-        bool in = bsearch(&v, out, found, sizeof *out, by_index) != NULL;
-        g_assert_true(in || near2 >= far2);
-        g_assert_true(!in || least2 < far2 * (1.0 + 1e-6));
-    }
     if (found)
-        g_assert_cmpuint(boxtree_nearer(t, pos, a, b, out, found - 1), ==, found);
+        g_assert_cmpuint(boxtree_rivals(t, pos, b, near, n_near, alone, list, found - 1), ==, found);
+    qsort(out, found, sizeof *out, by_index);
+    for (uint32_t i = 0; i < n; i++)
+        list[i] = 2 * i + 1;
+    g_assert_cmpuint(points_rivals(pos, list, n, b, near, n_near, alone, list), ==, found); /* of all, and in place */
+    g_assert_cmpmem(list, (int)(sizeof *list * found), out, (int)(sizeof *out * found));
+    for (int i = 0; i <= 4; i++)
+        for (int j = 0; j <= 4; j++) {
+            Vec2 p = vec2(b.x0 + (b.x1 - b.x0) * i / 4, b.y0 + (b.y1 - b.y0) * j / 4);
+            uint32_t best = 1;
+            for (uint32_t u = 3; u < 2 * n; u += 2)
+                best = plain_dist2(pos[u], p) < plain_dist2(pos[best], p) ? u : best;
+            for (uint32_t v = 1; v < 2 * n; v += 2) {
+                bool excluded = plain_dist2(pos[best], pos[v]) <= plain_dist2(pos[v], p);
+                for (uint32_t u = 1; !alone && u < 2 * n && !excluded; u += 2)
+                    excluded = plain_dist2(pos[u], p) <= plain_dist2(pos[v], p) && plain_dist2(pos[u], pos[v]) <= plain_dist2(pos[v], p);
+                g_assert_true(excluded || bsearch(&v, out, found, sizeof *out, by_index));
+            }
+        }
     g_free(out);
+    g_free(list);
+    return found;
 }
 
 static void test_boxtree(void)
 {
     Boxtree t = {0};
+    uint32_t found = 0, points = 0;
     for (uint32_t round = 0; round < 60; round++) {
         Dice d = {500 + round, 0};
         uint32_t n = round < 12 ? round : 1 + pick(&d, 300), *item = g_new(uint32_t, n + 1);
@@ -599,53 +620,24 @@ static void test_boxtree(void)
                 any |= p.x >= b.x0 && p.x <= b.x1 && p.y >= b.y0 && p.y <= b.y1;
             }
             g_assert_cmpint(boxtree_any_in(&t, pos, b), ==, any);
-            if (n) {
-                Vec2 q = pos[item[pick(&d, n)]];
-                check_nearest_to(&t, pos, n, b, k % 3 ? roll(&d) * 300 : HUGE_VAL);
-                check_nearer(&t, pos, n, b, (Box2){q.x, q.y, q.x + roll(&d) * 2, q.y + roll(&d) * 2});
-            }
+            uint32_t near[MOST], n_near = check_nearest_to(&t, pos, n, b, k % 3 ? roll(&d) * 300 : HUGE_VAL, near);
+            if (k % 3 || n == 0 || n_near > MOST || n > 40)
+                continue;
+            uint32_t some = check_rivals(&t, pos, n, b, near, n_near, false);
+            g_assert_cmpuint(some, <=, check_rivals(&t, pos, n, b, near, n_near, true));
+            found += some;
+            points += n;
         }
         g_free(pos);
         g_free(item);
     }
     boxtree_clear(&t);
+    g_assert_cmpuint(found, <, points / 4); /* most are no rivals */
 }
 
-/* ---- index of zones ---- */
+/* ---- grid ---- */
 
-/* Squares with a zone that holds a point are visited, once each; others, as far as the boxes are tight, only when a point lies in the box
- * around their zones. */
-static void check_visit(const Zones *z, uint32_t level, const Boxtree *tree, const Vec2 *place, const Box2 *zone, uint32_t n,
-                        const Vec2 *point, uint32_t m, double loose)
-{
-    uint32_t count = z->nx[level] * z->ny[level], *out = g_new(uint32_t, count);
-    bool *visited = g_new0(bool, count);
-    Box2 *around = g_new(Box2, count);
-    for (uint32_t q = 0; q < count; q++)
-        around[q] = box_empty();
-    for (uint32_t k = zones_visit(z, level, tree, point, out); k-- > 0;) {
-        g_assert_cmpuint(out[k], <, count);
-        g_assert_false(visited[out[k]]);
-        visited[out[k]] = true;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t cell = zones_cell(z, place[i]), q = (cell / z->nx[0] >> level) * z->nx[level] + (cell % z->nx[0] >> level);
-        around[q] = box_union(around[q], zone[i]);
-        for (uint32_t k = 0; k < m; k++)
-            g_assert_true(visited[q] || !box_has(zone[i], point[k]));
-    }
-    for (uint32_t q = 0; q < count; q++) {
-        bool about = false;
-        for (uint32_t k = 0; k < m; k++)
-            about |= box_has(box_grow(around[q], loose), point[k]);
-        g_assert_true(about || !visited[q] || loose == HUGE_VAL);
-    }
-    g_free(out);
-    g_free(visited);
-    g_free(around);
-}
-
-static void test_zones(void)
+static void test_grid(void)
 {
     static const Box2 field[] = {{-40, -40, 40, 40}, {-40, -3, 40, 5}, {0, 0, 1, 900}, {1000, 2000, 1080, 2079}};
     static const double size[] = {0.01, 1, 7, 500};
@@ -653,43 +645,18 @@ static void test_zones(void)
         Dice d = {7000 + round, 0};
         Box2 box = field[round % 4];
         double w = box.x1 - box.x0, h = box.y1 - box.y0;
-        Zones z;
-        zones_init(&z, box, size[round / 4 % 4]);
+        Grid g;
+        grid_init(&g, box, size[round / 4 % 4]);
         for (int again = 0; again < 2; again++) {
-            uint32_t n = pick(&d, 300), m = 1 + pick(&d, 40);
-            Vec2 *place = g_new(Vec2, n + 1), *point = g_new(Vec2, m);
-            Box2 *zone = g_new(Box2, n + 1);
-            uint32_t *item = g_new(uint32_t, m);
+            uint32_t n = pick(&d, 300);
+            Vec2 *place = g_new(Vec2, n + 1);
             for (uint32_t i = 0; i < n; i++) {
                 place[i] = vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
-                double x = roll(&d) * w * (i % 9 ? 0.05 : 1), y = roll(&d) * h * (i % 9 ? 0.05 : 1);
-                zone[i] = (Box2){place[i].x - x, place[i].y - y, place[i].x + roll(&d) * x, place[i].y + roll(&d) * y};
-                zones_add(&z, place[i], zone[i]);
-            }
-            for (uint32_t i = 0; i < m; i++) {
-                bool corner = n && i % 3 == 0; /* exactly on a zone's edge */
-                point[i] =
-                    corner ? vec2(zone[i % n].x0, zone[i % n].y1) : vec2(box.x0 + roll(&d) * w, box.y0 + roll(&d) * h);
-                item[i] = i;
-            }
-            Boxtree b = {0};
-            boxtree_build(&b, point, item, m);
-            for (uint32_t i = 0; i < n; i += 7) { /* some shrink, and are raised or not; some grow */
-                bool grows = i % 2;
-                zone[i] = grows ? box_grow(zone[i], w * 0.1) : (Box2){place[i].x, zone[i].y0, zone[i].x1, place[i].y};
-                zones_set(&z, i, zone[i]);
-                if (grows && round % 2 == 0)
-                    zones_lift(&z, i, place[i]);
-            }
-            if (round % 2)
-                zones_raise(&z);
-            double loose = 1e-6 * (fabs(box.x0) + fabs(box.x1) + fabs(box.y0) + fabs(box.y1));
-            for (uint32_t l = 0; l < z.levels; l++)
-                check_visit(&z, l, &b, place, zone, n, point, m, round % 2 ? loose : HUGE_VAL);
-            for (uint32_t i = 0; i < n; i++) {
-                Box2 got = zones_get(&z, i), want = box_grow(zone[i], loose);
-                g_assert_true(got.x0 <= zone[i].x0 && got.x0 >= want.x0 && got.y1 >= zone[i].y1 && got.y1 <= want.y1);
-                g_assert_true(got.y0 <= zone[i].y0 && got.y0 >= want.y0 && got.x1 >= zone[i].x1 && got.x1 <= want.x1);
+                grid_add(&g, place[i]);
+                uint32_t cell = grid_cell(&g, place[i]);
+                g_assert_cmpuint(cell, <, grid_cells(&g));
+                g_assert_cmpfloat(fabs(place[i].x - (box.x0 + (cell % g.nx + 0.5) * g.cell)), <=, g.cell * 0.5000001);
+                g_assert_cmpfloat(fabs(place[i].y - (box.y0 + (cell / g.nx + 0.5) * g.cell)), <=, g.cell * 0.5000001);
             }
             for (uint32_t k = 0; k < 200; k++) {
                 Vec2 p = vec2(box.x0 + (roll(&d) * 1.2 - 0.1) * w, box.y0 + (roll(&d) * 1.2 - 0.1) * h);
@@ -697,16 +664,20 @@ static void test_zones(void)
                 bool any = false;
                 for (uint32_t i = 0; i < n; i++)
                     any |= plain_dist2(place[i], p) < r * r;
-                g_assert_cmpint(zones_any_within(&z, place, p, r), ==, any);
+                g_assert_cmpint(grid_any_within(&g, place, p, r), ==, any);
             }
-            boxtree_clear(&b);
             g_free(place);
-            g_free(point);
-            g_free(zone);
-            g_free(item);
-            zones_reset(&z);
+            grid_reset(&g);
         }
-        zones_clear(&z);
+        grid_clear(&g);
+    }
+    for (uint32_t k = 0; k < 1000; k++) { /* boxes in single precision hold the box, and not much more */
+        Dice d = {7100 + k, 0};
+        double size_of = pow(10, roll(&d) * 8 - 2), x = (roll(&d) - 0.5) * size_of, y = (roll(&d) - 0.5) * size_of;
+        Box2 b = {x, y, x + roll(&d) * size_of, y + roll(&d)}, got = zone_as_box(zone_box(b));
+        Box2 more = box_grow(b, 1e-6 * (fabs(b.x0) + fabs(b.y0) + fabs(b.x1) + fabs(b.y1)));
+        g_assert_true(got.x0 <= b.x0 && got.y0 <= b.y0 && got.x1 >= b.x1 && got.y1 >= b.y1);
+        g_assert_true(got.x0 >= more.x0 && got.y0 >= more.y0 && got.x1 <= more.x1 && got.y1 <= more.y1);
     }
 }
 
@@ -726,6 +697,6 @@ int main(int argc, char **argv)
     g_test_add_func("/neighbours/zone/skips", test_zone_skips);
     g_test_add_func("/neighbours/quadtree", test_quadtree);
     g_test_add_func("/neighbours/boxtree", test_boxtree);
-    g_test_add_func("/neighbours/zones", test_zones);
+    g_test_add_func("/neighbours/grid", test_grid);
     return g_test_run();
 }

@@ -885,6 +885,10 @@ static void test_bands(void)
         for (int h = 0; h < 5; h++) {
             Painter *p = painter_at(k == 0 ? net : sparse, &f, h % 2 != 0 ? 3 : 1);
             uint32_t n = (f.height - 1) / heights[h] + 1;
+            gboolean expected[MAP_COUNT];
+            for (int i = 0; i < MAP_COUNT; i++) /* none, all, every other one */
+                expected[i] = h % 3 == 1 || (h % 3 == 2 && i % 2 == 0);
+            painter_expect(p, expected);
             for (uint32_t b = 0; b < n; b++) {
                 uint32_t y0 = (h == 3 ? n - 1 - b : b) * heights[h], y1 = MIN(y0 + heights[h], f.height);
                 painter_band(p, y0, y1);
@@ -905,6 +909,34 @@ static void test_bands(void)
     }
     network_free(net);
     network_free(sparse);
+}
+
+/* Rows of noise are the noise at their points, on lattices of all sizes, within the region and a little beyond. */
+static void test_noise_rows(void)
+{
+    static const double wave[] = {0.3, 1.0, 7.7, 400.0};
+    Box2 region = {-30.0, -10.0, 31.0, 42.0};
+    float out[700];
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 3; m++) {
+            double step = m == 0 ? 0.1 : m == 1 ? 0.09 : 1.0 / 256.0, sum = 0.0; /* 1/256: cells begin at pixels */
+            Noise n;
+            noise_init(&n, 11, (uint32_t)k, wave[k], region, 100.0);
+            for (double y = -10.0; y <= 42.0; y += 1.3) {
+                Vec2 start = vec2(-30.0 - step, y);
+                for (uint32_t i = 0; i < 700; i++)
+                    out[i] = -7.0f;
+                noise_row(&n, start, step, 3, 640, out);
+                for (uint32_t i = 3; i < 640; i++) {
+                    double want = noise_at(&n, vec2(start.x + i * step, y));
+                    g_assert_cmpfloat(fabs((double)out[i] - want), <, 1e-6 * (1.0 + fabs(want)));
+                    sum += fabs(want);
+                }
+                g_assert_true(out[2] == -7.0f && out[640] == -7.0f);
+            }
+            g_assert_cmpfloat(sum, >, 100.0);
+            noise_clear(&n);
+        }
 }
 
 static const Capsule *any_stroke(uint32_t i, const void *user) { return &((const Capsule *)user)[i]; }
@@ -1037,6 +1069,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/band", test_band);
     g_test_add_func("/paint/threads", test_threads);
     g_test_add_func("/paint/bands", test_bands);
+    g_test_add_func("/paint/noise-rows", test_noise_rows);
     g_test_add_func("/paint/degenerate", test_degenerate);
     g_test_add_func("/paint/frame", test_frame);
     g_test_add_func("/paint/infos", test_infos);

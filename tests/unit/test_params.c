@@ -163,7 +163,7 @@ static void test_messages(void)
     check_refused(
         "[]\n", PARAM_ERROR_UNKNOWN,
         "params/poplar.ini:1: []: no such section; sections are leaf, outline, scan, growth, sources, veins, lsystem, width, "
-        "texture, mesh, pose, export");
+        "texture, specimen, mesh, pose, export");
     check_refused("[veins\n", PARAM_ERROR_FILE,
                   "params/poplar.ini:1: [veins: a section's name stands in brackets, as [veins]");
     check_refused("[\n", PARAM_ERROR_FILE, "params/poplar.ini:1: [: a section's name stands in brackets, as [veins]");

@@ -586,8 +586,8 @@ static void test_settings_refused(void)
     bad[2].def.close = (double)NAN, bad[2].says = "closing radius nan";
     bad[3].def.open = -0.5, bad[3].says = "opening radius -0.5";
     bad[4].def.least_area = 2.0, bad[4].says = "least area 2: allowed are 0 … 1";
-    bad[5].def.has_base = true, bad[5].def.base = vec2(200, 30), bad[5].says = "base (200, 30): lies 150 pixels outside the leaf, which spans x 10 … 50";
-    bad[6].def.has_tip = true, bad[6].def.tip = vec2(30, -70), bad[6].says = "tip (30, -70): lies 85 pixels outside";
+    bad[5].def.has_base = true, bad[5].def.base = vec2(200, 30), bad[5].says = "scan.base 200,30 lies 150 pixels outside the leaf, which spans x 10 … 50, y 15";
+    bad[6].def.has_tip = true, bad[6].def.tip = vec2(30, -70), bad[6].says = "scan.tip 30,130 lies 85 pixels outside";
     for (int i = 0; i < 7; i++)
         capture_fails(s, &bad[i].def, SCAN_ERROR_VALUE, bad[i].says);
     ProfileDef same = profile_def_default();

@@ -1,0 +1,48 @@
+/* Grows the variants of a sweep, leaves side by side. Each is made in a hidden folder and appears in its place at once, with its row (rows.h): so what is there is
+ * whole, and a run that was stopped or killed goes on where it was, whoever made the rest. */
+#ifndef BATCH_BATCH_H
+#define BATCH_BATCH_H
+
+#include "sweep/sweep.h"
+
+typedef struct {
+    const Sweep *sweep;
+    const Params *params;     /* the sweep's, or a copy with what was set over it */
+    const char *out;          /* folder, which is there */
+    const char *staging;      /* hidden folder on the same file system; not needed to collect */
+    unsigned threads;         /* 0: all processors */
+    uint32_t shard, shards;   /* grows variants whose index is `shard` (from 0) modulo `shards`; 0, 1: all of them */
+    gboolean models;          /* shape the leaves, too */
+    gboolean labels;          /* write the annotations that a dataset is made of (dataset.h) */
+    uint32_t picture;         /* longer side of the picture for the sheet, pixels; 0: none */
+    gboolean specimen;        /* the picture is of the leaf as a scanner sees it, not of its veins alone */
+} BatchDef;
+
+typedef struct {
+    uint64_t total;            /* variants of this part */
+    uint64_t found;            /* there already */
+    uint64_t grown, failed;    /* now; `failed` counts old failures too */
+    uint32_t growing;          /* at the moment */
+    double part;               /* of those: how much is done, their sum */
+} BatchState;
+
+/* Does what is missing. `tick` is told the state ten times a second on the calling thread; FALSE stops the run. Returns FALSE with an error of the machine
+ * (a full disk), after which the rest was left, or of G_IO_ERROR_CANCELLED; variants whose parameters don't go together are no such error: they are rows. */
+gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state, gpointer user), gpointer user, BatchState *end, GError **error);
+
+/* What the files of a variant that is there take, bytes; 0 if it isn't. */
+uint64_t batch_bytes(const BatchDef *def, uint64_t index);
+
+/* Removes a folder with all in it. */
+void batch_remove(const char *folder);
+
+/* What is there of all variants: missing ones, and those from other parameters, which count as missing. */
+typedef struct {
+    uint64_t grown, failed, missing;
+} BatchCount;
+
+/* Writes <out>/manifest.jsonl and manifest.csv from all rows, in order, each beside its place and renamed. Memory does not go with the number of variants.
+ * Rows of other parameters are written as missing. */
+gboolean manifest_write(const BatchDef *def, BatchCount *count, GError **error);
+
+#endif

@@ -1,0 +1,167 @@
+/* index.html, which holds style and program, and beside it in page/ what it loads: sweep.js, the keys, and 0.js, 1.js …, the rows. Scripts, since a page that
+ * was opened from a disk may load nothing else. */
+#include "batch/page.h"
+
+#include <errno.h>
+#include <glib/gstdio.h>
+#include <string.h>
+
+#include "batch/page_private.h"
+#include "batch/sheet_label.h"
+#include "image/staged.h"
+#include "page-resources.h"
+
+void page_string(GString *s, const char *text)
+{
+    if (!text) {
+        g_string_append(s, "null");
+        return;
+    }
+    char *valid = g_utf8_make_valid(text, -1);
+    g_string_append_c(s, '"');
+    for (const char *c = valid; *c; c = g_utf8_next_char(c)) {
+        gunichar u = g_utf8_get_char(c);
+        if (u == '"' || u == '\\')
+            g_string_append_printf(s, "\\%c", (char)u);
+        else if (u < 0x20 || u == '<' || u == '>' || u == '&' || u == 0x7f || u == 0x2028 || u == 0x2029)
+            g_string_append_printf(s, "\\u%04x", (unsigned)u);
+        else
+            g_string_append_unichar(s, u);
+    }
+    g_string_append_c(s, '"');
+    g_free(valid);
+}
+
+static void member(GString *s, const char *name, const char *text)
+{
+    g_string_append_printf(s, "%s\"%s\":", s->str[s->len - 1] == '{' ? "" : ",", name);
+    page_string(s, text);
+}
+
+static void put_key(const Sweep *s, uint32_t k, GString *text)
+{
+    static const char *const type[] = {"number", "integer", "switch", "choice", "text", "file", "colour", "numbers", "points"};
+    SweepKey key = sweep_key(s, k);
+    const ParamInfo *info = key.id < 0 ? NULL : param_info((ParamId)key.id);
+    char *label = label_key(s, k);
+    g_string_append(text, k ? ",\n{" : "\n{");
+    member(text, "key", key.key);
+    member(text, "label", label);
+    member(text, "unit", label_unit(&key));
+    member(text, "doc", info ? info->doc : "Seed of the chance in the run");
+    member(text, "type", info ? type[info->type] : "integer");
+    char *own = info ? params_format(sweep_params(s), (ParamId)key.id) : g_strdup("1");
+    member(text, "own", own); /* the parameter file's, which null stands for */
+    g_string_append_printf(text, ",\"varies\":%s,\"levels\":%" G_GUINT64_FORMAT "}", key.varies ? "true" : "false", key.levels);
+    g_free(own);
+    g_free(label);
+}
+
+static void put_sweep(const Sweep *s, const char *title, uint64_t chunks, GString *text)
+{
+    static const char *const mode[] = {"grid", "zip", "sample"};
+    char *folder = g_path_get_dirname(sweep_path(s)), *file = g_path_get_basename(sweep_path(s));
+    g_string_append(text, "venationSweep({");
+    member(text, "title", title);
+    member(text, "file", file);
+    member(text, "mode", mode[sweep_mode(s)]);
+    member(text, "params", sweep_params_path(s));
+    member(text, "folder", folder); /* where FILE values start */
+    g_string_append_printf(text, ",\"count\":%" G_GUINT64_FORMAT ",\"chunks\":%" G_GUINT64_FORMAT ",\"keys\":[", sweep_count(s), chunks);
+    for (uint32_t k = 0; k < sweep_keys(s); k++)
+        put_key(s, k, text);
+    g_string_append(text, "\n]});\n");
+    g_free(file);
+    g_free(folder);
+}
+
+/* ---- files ---- */
+
+static gboolean write_text(const char *out, const char *name, const GString *text, GError **error)
+{
+    char *path = g_build_filename(out, name, NULL);
+    Staged file;
+    gboolean ok = staged_open(&file, path, error);
+    if (ok && fwrite(text->str, 1, text->len, file.file) != text->len) {
+        staged_error(path, errno, error);
+        staged_abort(&file);
+        ok = FALSE;
+    }
+    ok = ok && staged_commit(&file, error);
+    g_free(path);
+    return ok;
+}
+
+static gboolean write_chunks(const Sweep *s, const char *out, uint64_t chunks, GError **error)
+{
+    GString *text = g_string_new(NULL);
+    gboolean ok = TRUE;
+    for (uint64_t c = 0; ok && c < chunks; c++) {
+        char *name = g_strdup_printf("page/%" G_GUINT64_FORMAT ".js", c);
+        g_string_truncate(text, 0);
+        page_rows(s, out, c * PAGE_CHUNK, MIN(PAGE_CHUNK, sweep_count(s) - c * PAGE_CHUNK), text);
+        ok = write_text(out, name, text, error);
+        g_free(name);
+    }
+    g_string_free(text, TRUE);
+    return ok;
+}
+
+/* Those of a former, larger sweep. */
+static void remove_rest(const char *out, uint64_t chunks)
+{
+    for (bool found = true; found; chunks++) {
+        char *name = g_strdup_printf("%s/page/%" G_GUINT64_FORMAT ".js", out, chunks);
+        found = g_unlink(name) == 0;
+        g_free(name);
+    }
+}
+
+/* Adds a file that was built in; its marks are replaced by the others. */
+static void add_resource(GString *text, const char *name, const char *title)
+{
+    char *path = g_strconcat("/venation/page/", name, NULL);
+    GBytes *bytes = g_resource_lookup_data(page_get_resource(), path, G_RESOURCE_LOOKUP_FLAGS_NONE, NULL);
+    g_assert(bytes); /* built in */
+    gsize n;
+    const char *at = g_bytes_get_data(bytes, &n), *end = at + n, *mark;
+    while ((mark = g_strstr_len(at, end - at, "@@")) != NULL) {
+        const char *stop = g_strstr_len(mark + 2, end - mark - 2, "@@");
+        g_assert(stop); /* marks are pairs */
+        char *what = g_strndup(mark + 2, (gsize)(stop - mark - 2));
+        g_string_append_len(text, at, mark - at);
+        if (strcmp(what, "title") == 0)
+            label_xml(text, title);
+        else
+            add_resource(text, what, title);
+        g_free(what);
+        at = stop + 2;
+    }
+    g_string_append_len(text, at, end - at);
+    g_bytes_unref(bytes);
+    g_free(path);
+}
+
+gboolean page_write(const Sweep *s, const char *out, const char *title, GError **error)
+{
+    uint64_t chunks = (sweep_count(s) + PAGE_CHUNK - 1) / PAGE_CHUNK;
+    char *folder = g_build_filename(out, "page", NULL), *own = g_path_get_basename(sweep_path(s));
+    GString *text = g_string_new(NULL);
+    if (g_str_has_suffix(own, ".ini"))
+        own[strlen(own) - 4] = '\0';
+    gboolean ok = g_mkdir_with_parents(folder, 0777) == 0;
+    if (!ok)
+        staged_error(folder, errno, error);
+    ok = ok && write_chunks(s, out, chunks, error);
+    put_sweep(s, title ? title : own, chunks, text);
+    ok = ok && write_text(out, "page/sweep.js", text, error);
+    g_string_truncate(text, 0);
+    add_resource(text, "page.html", title ? title : own);
+    ok = ok && write_text(out, "index.html", text, error);
+    if (ok)
+        remove_rest(out, chunks);
+    g_string_free(text, TRUE);
+    g_free(folder);
+    g_free(own);
+    return ok;
+}

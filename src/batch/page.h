@@ -1,0 +1,10 @@
+/* The page to browse a sweep with: plain files, no server, no network. */
+#ifndef BATCH_PAGE_H
+#define BATCH_PAGE_H
+
+#include "batch/rows.h"
+
+/* Writes <out>/index.html and the data it loads, from the variants' rows. Memory does not go with the number of variants. */
+gboolean page_write(const Sweep *s, const char *out, const char *title, GError **error);
+
+#endif

@@ -1,0 +1,437 @@
+/* venation sweep: many leaves from one file. */
+#include <glib/gstdio.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "batch/batch.h"
+#include "batch/dataset.h"
+#include "batch/page.h"
+#include "batch/sheet.h"
+#include "cli/run.h"
+#include "lib/leaf.h"
+
+enum { MOST_THREADS = 1024, MOST_SHARDS = 1000000, MOST_CELL = 2048, TRIAL_SECONDS = 20, MOST_TOLD = 3 };
+
+typedef struct {
+    CommonArgs common;
+    gboolean quiet, dry_run, collect, dataset;
+    char *dir, *threads, *size, *maps, *write, *shard, *cell, *picture, *validation;
+    char **set;
+} SweepArgs;
+
+#define FIELD(name) (gpointer) offsetof(SweepArgs, name)
+static const GOptionEntry options[] = {
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, FIELD(dir), "Folder to write to (default: out/NAME)", "DIR"},
+    {"write", 0, 0, G_OPTION_ARG_FILENAME, FIELD(write),
+     "What each leaf leaves: none, or out of maps svg network mesh, with commas or spaces between them (default: what the parameters ask for, no mesh)", "KINDS"},
+    {"maps", 0, 0, G_OPTION_ARG_FILENAME, FIELD(maps), "Maps to paint, as --set texture.maps", "LIST"},
+    {"size", 0, 0, G_OPTION_ARG_FILENAME, FIELD(size), "Longer side of the maps in pixels, as --set texture.size=PX", "PX"},
+    {"set", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, FIELD(set), "Set a parameter of all variants, over the parameter file's value", "section.key=value"},
+    {"dataset", 0, 0, G_OPTION_ARG_NONE, FIELD(dataset),
+     "Write training data: images as a scanner sees the leaves, masks of blade, veins, orders and areoles, and COCO annotations, in DIR/dataset", NULL},
+    {"validation", 0, 0, G_OPTION_ARG_FILENAME, FIELD(validation), "Part of the data set that is for validation, chosen by seed (default: 0.2)", "PART"},
+    {"shard", 0, 0, G_OPTION_ARG_FILENAME, FIELD(shard), "Grow the I-th of N parts only, I from 1; --collect ends the work", "I/N"},
+    {"collect", 0, 0, G_OPTION_ARG_NONE, FIELD(collect), "Grow nothing: write manifest, sheet and page of what is there", NULL},
+    {"dry-run", 0, 0, G_OPTION_ARG_NONE, FIELD(dry_run), "List the variants, and estimate size and time by growing one of them for a trial", NULL},
+    {"cell", 0, 0, G_OPTION_ARG_FILENAME, FIELD(cell), "Pixels of a leaf on the contact sheet (default: 320; 0: no pictures, sheet and page)", "PX"},
+    {"picture", 0, 0, G_OPTION_ARG_FILENAME, FIELD(picture), "What sheet and page show: veins, black on white (the default), or specimen, the leaf in its colours (the default of a data set)",
+     "veins|specimen"},
+    {"threads", 0, 0, G_OPTION_ARG_FILENAME, FIELD(threads), "Threads to use (default: one a processor); the result is the same", "N"},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, FIELD(quiet), "Say nothing but errors", NULL},
+    {0},
+};
+
+typedef struct {
+    const Verb *verb;
+    const SweepArgs *args;
+    char *name, *dir;
+    guint64 shard, shards, threads, cell;
+    double validation;
+    Sweep *sweep;
+    Params *params;
+    Output *output;
+    Interrupt *interrupt;
+    Progress *progress;
+    BatchDef def;
+    gint64 begun;
+} Sweeping;
+
+/* ---- arguments ---- */
+
+static gboolean read_shard(Sweeping *w, const char *text)
+{
+    char **part = g_strsplit(text, "/", -1);
+    gboolean good = g_strv_length(part) == 2 && cli_count_from(w->verb, "--shard", part[1], 1, MOST_SHARDS, &w->shards) &&
+                    cli_count_from(w->verb, "--shard", part[0], 1, w->shards, &w->shard);
+    if (g_strv_length(part) != 2)
+        cli_usage(w->verb, "--shard %s: must be I/N, as 1/4 for the first of four parts", text);
+    g_strfreev(part);
+    return good;
+}
+
+static gboolean read_validation(Sweeping *w, const char *text)
+{
+    char *end;
+    w->validation = g_ascii_strtod(text, &end);
+    if (!*text || *end || !(w->validation >= 0.0 && w->validation <= 1.0)) {
+        cli_usage(w->verb, "--validation %s: must be a number from 0 to 1", text);
+        return FALSE;
+    }
+    return TRUE;
+}
+
+/* Options that say the same twice, or nothing. */
+static gboolean check_choice(const Sweeping *w)
+{
+    const SweepArgs *a = w->args;
+    const char *wrong = a->shard && a->collect                     ? "--collect comes after all shards; it goes without --shard"
+                        : a->dataset && (a->write || a->maps)      ? "--dataset writes what a data set needs; it goes without --write and --maps"
+                        : a->validation && !a->dataset             ? "--validation goes with --dataset"
+                                                                   : NULL;
+    if (wrong)
+        cli_usage(w->verb, "%s", wrong);
+    return !wrong;
+}
+
+static gboolean read_args(Sweeping *w, const Verb *verb, const SweepArgs *a)
+{
+    char **operands = a->common.operands;
+    *w = (Sweeping){.verb = verb, .args = a, .shard = 1, .shards = 1, .cell = 320, .validation = 0.2, .begun = g_get_monotonic_time()};
+    if (!operands || operands[1]) {
+        cli_usage(verb, operands ? "%s: one file at a time" : "%s: a sweep file is missing", verb->name);
+        return FALSE;
+    }
+    if (a->picture && strcmp(a->picture, "veins") != 0 && strcmp(a->picture, "specimen") != 0) {
+        cli_usage(verb, "--picture %s: must be veins or specimen", a->picture);
+        return FALSE;
+    }
+    if (!check_choice(w) || (a->validation && !read_validation(w, a->validation)) || (a->shard && !read_shard(w, a->shard)) || (a->threads && !cli_count(verb, "--threads", a->threads, MOST_THREADS, &w->threads)) ||
+        (a->cell && !cli_count(verb, "--cell", a->cell, MOST_CELL, &w->cell)))
+        return FALSE;
+    if (w->cell && w->cell < 16) {
+        cli_usage(verb, "--cell %s: must be 0, or 16 or more", a->cell);
+        return FALSE;
+    }
+    char *base = g_path_get_basename(operands[0]), *dot = strrchr(base, '.');
+    w->name = g_strndup(base, dot && dot != base ? (gsize)(dot - base) : strlen(base));
+    w->dir = a->dir ? g_strdup(a->dir) : g_build_filename("out", w->name, NULL);
+    g_free(base);
+    return TRUE;
+}
+
+/* ---- what is grown ---- */
+
+static gboolean put(Sweeping *w, const char *option, const char *key, const char *value, GError **error)
+{
+    return params_set(w->params, (ParamId)param_find(key), value, option, error);
+}
+
+/* --write: what is not in the list is off. */
+static gboolean choose_writing(Sweeping *w, GError **error)
+{
+    static const char *const kind[] = {"maps", "svg", "network", "mesh", "none"};
+    gboolean wanted[G_N_ELEMENTS(kind)] = {FALSE};
+    char **word = g_strsplit_set(w->args->write, ", ", -1);
+    const char *wrong = NULL;
+    for (char **at = word; *at && !wrong; at++) {
+        gsize k = 0;
+        while (k < G_N_ELEMENTS(kind) && strcmp(kind[k], *at) != 0)
+            k++;
+        if (k < G_N_ELEMENTS(kind))
+            wanted[k] = TRUE;
+        else if (**at)
+            wrong = *at;
+    }
+    gboolean ok = !wrong;
+    if (wrong)
+        g_set_error(error, PARAM_ERROR, PARAM_ERROR_VALUE, "--write %s: must be none, or names out of maps svg network mesh", wrong);
+    g_strfreev(word);
+    w->def.models = wanted[3];
+    return ok && (wanted[0] || (put(w, "--write", "texture.maps", "none", error) && put(w, "--write", "export.veins_image", "no", error))) &&
+           put(w, "--write", "export.svg", wanted[1] ? "yes" : "no", error) && put(w, "--write", "export.network", wanted[2] ? "yes" : "no", error);
+}
+
+/* What a sweep varies can't be one value for all. */
+static gboolean check_set(const Sweeping *w, const char *assignment, GError **error)
+{
+    for (uint32_t k = 0; k < sweep_keys(w->sweep); k++) {
+        SweepKey key = sweep_key(w->sweep, k);
+        gsize n = strlen(key.key);
+        if (strncmp(assignment, key.key, n) == 0 && assignment[n] == '=') {
+            g_set_error(error, PARAM_ERROR, PARAM_ERROR_VALUE, "--set %s: %s gives %s its values", assignment, sweep_path(w->sweep), key.key);
+            return FALSE;
+        }
+    }
+    return TRUE;
+}
+
+static gboolean read_sweep(Sweeping *w, GError **error)
+{
+    const SweepArgs *a = w->args;
+    w->sweep = sweep_load(a->common.operands[0], error);
+    if (!w->sweep)
+        return FALSE;
+    w->params = params_copy(sweep_params(w->sweep));
+    for (char **s = a->set; s && *s; s++)
+        if (!check_set(w, *s, error) || !params_override(w->params, *s, error))
+            return FALSE;
+    if ((a->maps && !put(w, "--maps", "texture.maps", a->maps, error)) || (a->size && !put(w, "--size", "texture.size", a->size, error)) ||
+        (a->write && !choose_writing(w, error)) || (a->dataset && !dataset_params(w->params, "--dataset", error)))
+        return FALSE;
+    w->def.labels = a->dataset;
+    w->def.sweep = w->sweep;
+    w->def.params = w->params;
+    w->def.out = w->dir;
+    w->def.threads = (unsigned)w->threads;
+    w->def.shard = (uint32_t)(w->shard - 1);
+    w->def.shards = (uint32_t)w->shards;
+    w->def.picture = (uint32_t)w->cell;
+    w->def.specimen = a->picture ? strcmp(a->picture, "specimen") == 0 : a->dataset;
+    return TRUE;
+}
+
+/* ---- the run ---- */
+
+static void abandon(gpointer user)
+{
+    Sweeping *w = user;
+    if (w->output)
+        output_discard(w->output);
+    if (!w->args->quiet)
+        fputs("\nvenation: stopped; what is finished stays, and the same command goes on from there\n", stderr);
+}
+
+static char *duration(double seconds)
+{
+    if (seconds < 99.5)
+        return g_strdup_printf("%.0f s", MAX(seconds, 1.0));
+    return seconds < 5970.0 ? g_strdup_printf("%.0f min", seconds / 60.0) : g_strdup_printf("%.1f h", seconds / 3600.0);
+}
+
+static gboolean on_tick(const BatchState *now, gpointer user)
+{
+    Sweeping *w = user;
+    uint64_t over = now->found + now->grown + now->failed;
+    double work = (double)now->grown + now->part, left = (double)(now->total - over) - now->part;
+    double seconds = (double)(g_get_monotonic_time() - w->begun) / G_USEC_PER_SEC;
+    GString *facts = g_string_new(NULL);
+    g_string_append_printf(facts, "  %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT, over, now->total);
+    if (now->failed)
+        g_string_append_printf(facts, ", %" G_GUINT64_FORMAT " failed", now->failed);
+    if (work > 0.1 && seconds > 2.0) {
+        char *time = duration(seconds / work * left);
+        g_string_append_printf(facts, ", about %s left", time);
+        g_free(time);
+    }
+    progress_part(w->progress, ((double)over + now->part) / (double)now->total, facts->str);
+    g_string_free(facts, TRUE);
+    return interrupt_signal(w->interrupt) == 0;
+}
+
+static int grow_all(Sweeping *w, BatchState *end)
+{
+    GError *error = NULL;
+    interrupt_polite(w->interrupt);
+    gboolean good = batch_run(&w->def, on_tick, w, end, &error);
+    interrupt_hold(w->interrupt);
+    progress_clear(w->progress);
+    if (good)
+        return 0;
+    if (!interrupt_signal(w->interrupt))
+        return run_report(error, FALSE);
+    g_clear_error(&error);
+    if (!w->args->quiet)
+        cli_fail(0, "stopped; %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT " are there, and the same command goes on from there",
+                 end->found + end->grown + end->failed, end->total);
+    return EXIT_SIGNAL + interrupt_signal(w->interrupt);
+}
+
+static gboolean collect(Sweeping *w, BatchCount *count, GError **error)
+{
+    progress_say(w->progress, ": collecting");
+    const SheetDef sheet = {.cell = (uint32_t)w->cell};
+    gboolean ok = manifest_write(&w->def, count, error) && (!w->args->dataset || dataset_write(&w->def, w->validation, error)) && (!w->cell || (sheet_write(w->sweep, w->dir, &sheet, error) && page_write(w->sweep, w->dir, w->name, error)));
+    progress_clear(w->progress);
+    return ok;
+}
+
+/* Why the first few failed; the rest is in the folder. */
+static void tell_failures(const Sweeping *w)
+{
+    uint32_t told = 0;
+    for (uint64_t i = w->def.shard; i < sweep_count(w->sweep) && told < MOST_TOLD; i += w->def.shards) {
+        Row row;
+        row_read(w->sweep, w->dir, i, &row);
+        if (row.outcome == ROW_FAILED) {
+            cli_fail(0, "%s: %s", row.variant.name, row.error);
+            told++;
+        }
+        row_clear(&row);
+    }
+}
+
+static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed, uint64_t missing)
+{
+    GString *s = g_string_new(NULL);
+    char *dir = g_filename_display_name(w->dir);
+    if (failed)
+        tell_failures(w);
+    if (end)
+        g_string_append_printf(s, "%" G_GUINT64_FORMAT " %s grown, %" G_GUINT64_FORMAT " were there", end->grown, end->grown == 1 ? "leaf" : "leaves", end->found);
+    if (failed)
+        g_string_append_printf(s, "%s%" G_GUINT64_FORMAT " failed (%s/failed)", s->len ? ", " : "", failed, dir);
+    if (missing)
+        g_string_append_printf(s, "%s%" G_GUINT64_FORMAT " missing", s->len ? ", " : "", missing);
+    if (!w->args->quiet) {
+        fprintf(stderr, "%s: %s%s%.1f s\n", w->name, s->str, s->len ? ", " : "", (double)(g_get_monotonic_time() - w->begun) / G_USEC_PER_SEC);
+        if (w->args->shard)
+            fprintf(stderr, "%s: part %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT "; after the last one: venation sweep --collect\n", dir, w->shard, w->shards);
+        else
+            fprintf(stderr, "%s: %s%smanifest.csv, manifest.jsonl, leaves\n", dir, w->args->dataset ? "dataset, " : "", w->cell ? "sheet.png, index.html, " : "");
+    }
+    g_free(dir);
+    g_string_free(s, TRUE);
+}
+
+static int carry_out(Sweeping *w)
+{
+    GError *error = NULL;
+    BatchState end = {0};
+    BatchCount count = {0};
+    w->interrupt = interrupt_new(abandon, w);
+    interrupt_hold(w->interrupt);
+    w->output = output_new(w->dir, &error);
+    if (!w->output)
+        return run_report(error, FALSE);
+    w->def.staging = output_staging(w->output);
+    w->progress = w->args->quiet ? NULL : progress_new(w->name);
+    int status = w->args->collect ? 0 : grow_all(w, &end);
+    if (status != 0)
+        return status;
+    if (!w->args->shard && !collect(w, &count, &error))
+        return run_report(error, FALSE);
+    uint64_t failed = w->args->shard ? end.failed : count.failed;
+    summarise(w, w->args->collect ? NULL : &end, failed, count.missing);
+    return failed || count.missing ? EXIT_BAD_INPUT : 0;
+}
+
+/* ---- for a trial ---- */
+
+static gboolean list(const Sweeping *w)
+{
+    int digits = 1;
+    for (uint64_t n = sweep_count(w->sweep) - 1; n >= 10; n /= 10)
+        digits++;
+    for (uint64_t i = w->def.shard; i < sweep_count(w->sweep); i += w->def.shards) {
+        SweepVariant v;
+        sweep_variant(w->sweep, i, &v);
+        GString *s = g_string_new(NULL);
+        g_string_append_printf(s, "%*" G_GUINT64_FORMAT "  %s ", digits, i, v.name);
+        for (uint32_t k = 0; k < v.n; k++)
+            if (sweep_key(w->sweep, k).varies)
+                g_string_append_printf(s, " %s=%s", sweep_key(w->sweep, k).key, v.value[k] ? v.value[k] : "(parameter file's)");
+        g_string_append_c(s, '\n');
+        gboolean ok = cli_print(s->str) == 0;
+        g_string_free(s, TRUE);
+        sweep_variant_clear(&v);
+        if (!ok)
+            return FALSE;
+    }
+    return TRUE;
+}
+
+typedef struct {
+    gint64 limit;
+} Trial;
+
+static gboolean trial_tick(const BatchState *now, gpointer user) { return g_get_monotonic_time() < ((Trial *)user)->limit; }
+
+/* Grows the variant in the middle in a folder that goes again. */
+static void estimate(Sweeping *w)
+{
+    uint64_t count = sweep_count(w->sweep), mine = (count - w->def.shard - 1) / w->def.shards + 1, middle = w->def.shard + mine / 2 * w->def.shards;
+    char *folder = g_dir_make_tmp("venation-trial-XXXXXX", NULL), *staging = folder ? g_build_filename(folder, "staging", NULL) : NULL;
+    if (!folder)
+        return;
+    BatchDef def = w->def;
+    def.out = folder;
+    def.staging = staging;
+    def.threads = 1;
+    def.shard = (uint32_t)middle;
+    def.shards = (uint32_t)count;
+    Trial trial = {g_get_monotonic_time() + TRIAL_SECONDS * G_USEC_PER_SEC};
+    BatchState end;
+    gint64 begun = g_get_monotonic_time();
+    gboolean good = batch_run(&def, trial_tick, &trial, &end, NULL);
+    double seconds = (double)(g_get_monotonic_time() - begun) / G_USEC_PER_SEC;
+    uint64_t bytes = batch_bytes(&def, middle);
+    if (good && end.grown) {
+        char *size = g_format_size(bytes), *all = g_format_size(bytes * mine);
+        unsigned workers = (unsigned)MIN(mine, w->threads ? w->threads : g_get_num_processors());
+        char *each = duration(seconds), *whole = duration(seconds * (double)mine / workers);
+        fprintf(stderr, "%" G_GUINT64_FORMAT " variants of about %s and %s each (as number %" G_GUINT64_FORMAT ", grown for a trial): %s, %s on %u thread%s\n", mine, size,
+                each, middle, all, whole, workers, cli_s(workers));
+        g_free(each);
+        g_free(whole);
+        g_free(size);
+        g_free(all);
+    } else {
+        fprintf(stderr, "%" G_GUINT64_FORMAT " variants; %s\n", mine,
+                good ? "the one grown for a trial failed" : "the one grown for a trial takes longer than 20 s, so size and time are not known");
+    }
+    batch_remove(folder);
+    g_free(staging);
+    g_free(folder);
+}
+
+static int dry_run(Sweeping *w)
+{
+    if (!list(w))
+        return EXIT_FAILED;
+    if (!w->args->quiet)
+        estimate(w);
+    return 0;
+}
+
+static void clear(Sweeping *w)
+{
+    if (w->interrupt)
+        interrupt_hold(w->interrupt);
+    progress_free(w->progress);
+    output_free(w->output);
+    interrupt_free(w->interrupt);
+    sweep_free(w->sweep);
+    params_free(w->params);
+    g_free(w->name);
+    g_free(w->dir);
+}
+
+static int run_sweep(const Verb *verb, int argc, char **argv)
+{
+    SweepArgs args = {0};
+    int status;
+    if (cli_parse(verb, &args, argc, argv, &status)) {
+        Sweeping w;
+        GError *error = NULL;
+        status = EXIT_USAGE;
+        if (read_args(&w, verb, &args))
+            status = !read_sweep(&w, &error) ? run_report(error, TRUE) : args.dry_run ? dry_run(&w) : carry_out(&w);
+        clear(&w);
+    }
+    cli_clear(verb, &args);
+    return status;
+}
+
+const Verb sweep_verb = {
+    "sweep",
+    "SWEEP",
+    "Grow many leaves from one file, and show them on a sheet",
+    "Grows every variant of a sweep file: a parameter file of which keys vary, by lists, ranges, chance or a table. Leaves are grown side by side on all processors. "
+    "Each appears whole in its folder, DIR/leaves/NAME; those that can't be grown leave a word on why in DIR/failed. At the end there are manifest.csv and "
+    "manifest.jsonl, with parameters, counts and hashes of all, sheet.png and sheet.svg, a picture of all leaves with what varies along its axes, and index.html, "
+    "a page to browse them with.\n\n"
+    "Stopped or killed at any time, the same command does what is missing. --shard I/N does one of N parts, on one machine or many that share the folder; "
+    "--collect, with the same options, then writes manifest, sheet and page.",
+    options,
+    run_sweep,
+};

@@ -1,0 +1,23 @@
+/* Four numbers at a time. The compiler makes of it what the machine has; as it is + - * / √ and comparisons, lane by lane, the bits are
+ * those of one number after the other. */
+#ifndef GEOM_VECTORS_H
+#define GEOM_VECTORS_H
+
+#include <stdint.h>
+
+typedef double Four __attribute__((vector_size(32)));
+typedef int64_t FourMask __attribute__((vector_size(32))); /* of a comparison: all ones or 0 */
+
+/* A function with loops over them: compiled twice where the loader can choose. Not with fused multiply-add, whose bits are others. */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define FOUR_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define FOUR_WIDE
+#endif
+
+#define FOUR(v) ((Four){(v), (v), (v), (v)})
+#define FOUR_PICK(mask, a, b) ((Four)(((FourMask)(a) & (mask)) | ((FourMask)(b) & ~(mask))))
+#define FOUR_ANY(mask) ((((mask)[0] | (mask)[1]) | ((mask)[2] | (mask)[3])) != 0)
+
+#endif

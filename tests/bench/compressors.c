@@ -1,0 +1,242 @@
+#include "compressors.h"
+
+#include <isa-l/igzip_lib.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <zlib.h>
+
+#include "image/encode.h"
+#include "image/paint.h"
+#include "lib/settings.h"
+
+enum { CHUNK = 16 }; /* rows of a ZIP chunk */
+enum { NONE, SUB, UP, AVERAGE, PAETH };
+
+struct Plain {
+    PlainKind kind;
+    int depth, filter;
+    Encoder encoder;
+    uint32_t width, step;        /* step: bytes of a pixel in the file */
+    uint8_t *row[2];             /* unfiltered, the last one first */
+    GByteArray *bytes, *packed;  /* of the band */
+    gsize piece;                 /* bytes compressed on their own; 0: all of them go on with one stream */
+    struct isal_zstream stream;
+    uint8_t memory[ISAL_DEF_LVL3_DEFAULT];
+};
+
+static void begin_stream(struct isal_zstream *s, uint32_t level, uint8_t *memory)
+{
+    static const uint32_t size[] = {0, ISAL_DEF_LVL1_DEFAULT, ISAL_DEF_LVL2_DEFAULT, ISAL_DEF_LVL3_DEFAULT};
+    isal_deflate_init(s);
+    s->level = level;
+    s->level_buf = memory;
+    s->level_buf_size = size[level];
+    s->gzip_flag = IGZIP_ZLIB;
+}
+
+Plain *plain_new(PlainKind kind, const Plane *like, int depth)
+{
+    Plain *f = g_new0(Plain, 1);
+    gboolean half = like->kind != PLANE_LABEL;
+    f->kind = kind;
+    f->width = like->width;
+    encoder_init(&f->encoder, like, depth);
+    f->step = kind == PLAIN_PNG ? f->encoder.channels * (uint32_t)f->encoder.depth / 8 : like->channels * (half ? 2 : 4);
+    f->filter = like->kind == PLANE_LABEL ? NONE : UP;
+    f->piece = kind == PLAIN_EXR ? (gsize)f->width * f->step * CHUNK : 0;
+    f->row[0] = g_malloc0((gsize)f->width * f->step);
+    f->row[1] = g_malloc0((gsize)f->width * f->step);
+    f->bytes = g_byte_array_new();
+    f->packed = g_byte_array_new();
+    begin_stream(&f->stream, 1, f->memory);
+    return f;
+}
+
+void plain_free(Plain *f)
+{
+    encoder_clear(&f->encoder);
+    g_free(f->row[0]);
+    g_free(f->row[1]);
+    g_byte_array_free(f->bytes, TRUE);
+    g_byte_array_free(f->packed, TRUE);
+    g_free(f);
+}
+
+static int paeth(int a, int b, int c)
+{
+    int p = a + b - c, pa = abs(p - a), pb = abs(p - b), pc = abs(p - c);
+    return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
+}
+
+static void fill_png(Plain *f, const Plane *band)
+{
+    gsize n = (gsize)f->width * f->step;
+    g_byte_array_set_size(f->bytes, (guint)(band->height * (n + 1)));
+    uint8_t *out = f->bytes->data;
+    for (uint32_t y = 0; y < band->height; y++) {
+        uint8_t *up = f->row[0], *now = f->row[1];
+        encoder_row(&f->encoder, band, y, now);
+        *out++ = (uint8_t)f->filter;
+        for (gsize i = 0; i < n; i++) {
+            int a = i < f->step ? 0 : now[i - f->step], b = up[i], c = i < f->step ? 0 : up[i - f->step];
+            int guess = f->filter == SUB ? a : f->filter == UP ? b : f->filter == AVERAGE ? (a + b) / 2 : f->filter == PAETH ? paeth(a, b, c) : 0;
+            *out++ = (uint8_t)(now[i] - guess);
+        }
+        f->row[0] = now;
+        f->row[1] = up;
+    }
+}
+
+/* The chunk's even bytes before its odd ones, each less the one before. */
+static void predict(const uint8_t *in, gsize n, uint8_t *out)
+{
+    for (gsize i = 0; i < n; i++)
+        out[(i & 1) * (n / 2) + i / 2] = in[i];
+    for (gsize i = n - 1; i > 0; i--)
+        out[i] = (uint8_t)(out[i] - out[i - 1] + 128);
+}
+
+static void fill_exr(Plain *f, const Plane *band)
+{
+    uint32_t nc = band->channels, size = f->step / nc;
+    gsize n = (gsize)f->width * f->step * band->height, at = 0;
+    uint8_t *raw = g_malloc(n);
+    for (uint32_t y = 0; y < band->height; y++)
+        for (uint32_t c = nc; c-- > 0;)
+            for (uint32_t x = 0; x < f->width; x++, at += size) {
+                float v = band->px[((gsize)y * f->width + x) * nc + c];
+                uint16_t h = encode_half(v);
+                memcpy(raw + at, size == 2 ? (const void *)&h : &v, size);
+            }
+    g_byte_array_set_size(f->bytes, (guint)n);
+    for (at = 0; at < n; at += f->piece)
+        predict(raw + at, MIN(n - at, f->piece), f->bytes->data + at);
+    g_free(raw);
+}
+
+void plain_fill(Plain *f, const Plane *band)
+{
+    if (f->kind == PLAIN_PNG)
+        fill_png(f, band);
+    else
+        fill_exr(f, band);
+    g_byte_array_set_size(f->packed, f->bytes->len + f->bytes->len / 8 + 65536);
+}
+
+/* A piece, or one more of the stream. */
+static gsize compress_piece(Plain *f, const uint8_t *in, gsize n, uint32_t level)
+{
+    struct isal_zstream *s = &f->stream;
+    if (f->piece > 0) {
+        isal_deflate_stateless_init(s);
+        begin_stream(s, level, f->memory);
+        s->end_of_stream = 1;
+    }
+    s->next_in = (uint8_t *)(gintptr)in;
+    s->avail_in = (uint32_t)n;
+    s->next_out = f->packed->data;
+    s->avail_out = f->packed->len;
+    if ((f->piece > 0 ? isal_deflate_stateless(s) : isal_deflate(s)) != COMP_OK || s->avail_in > 0)
+        g_error("ISA-L failed");
+    return MIN(f->packed->len - s->avail_out, f->piece > 0 ? n : G_MAXSIZE);
+}
+
+static gsize compress_band(Plain *f, uint32_t level)
+{
+    gsize n = f->bytes->len, sum = 0, piece = f->piece > 0 ? f->piece : n;
+    for (gsize at = 0; at < n; at += piece)
+        sum += compress_piece(f, f->bytes->data + at, MIN(n - at, piece), level);
+    return sum;
+}
+
+gsize plain_compress(Plain *f) { return compress_band(f, 1); }
+
+/* ---- other compressors ---- */
+
+static double thread_time(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+typedef struct {
+    const char *name;
+    gboolean zlib;
+    int level, strategy, filter; /* filter -1: as the library does; other than that it is for all maps */
+    double seconds[2];
+    gsize bytes[2];
+} Trial;
+
+static gsize zlib_band(const Plain *f, z_stream *z, const Trial *t)
+{
+    gsize n = f->bytes->len, sum = 0, piece = f->piece > 0 ? f->piece : n;
+    for (gsize at = 0; at < n; at += piece) {
+        if (f->piece > 0)
+            deflateInit2(z, t->level, Z_DEFLATED, 15, 8, t->strategy);
+        z->next_in = f->bytes->data + at;
+        z->avail_in = (uInt)MIN(n - at, piece);
+        z->next_out = f->packed->data;
+        z->avail_out = f->packed->len;
+        deflate(z, f->piece > 0 ? Z_FINISH : Z_NO_FLUSH);
+        gsize got = f->packed->len - z->avail_out;
+        sum += f->piece > 0 ? MIN(got, MIN(n - at, piece)) : got;
+        if (f->piece > 0)
+            deflateEnd(z);
+    }
+    return sum;
+}
+
+static void try_map(Painter *painter, const Frame *frame, MapId id, gboolean exr, Trial *t)
+{
+    gboolean wide = id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
+    Plane *plane = painter_paint(painter, id);
+    Plain *f = plain_new(exr ? PLAIN_EXR : PLAIN_PNG, plane, wide ? 16 : 8);
+    z_stream z = {0};
+    if (t->filter >= 0)
+        f->filter = t->filter;
+    if (t->zlib && !exr)
+        deflateInit2(&z, t->level, Z_DEFLATED, 15, 8, t->strategy);
+    else
+        begin_stream(&f->stream, (uint32_t)t->level, f->memory);
+    for (uint32_t y = 0; y < frame->height; y += 128) {
+        Plane band = *plane;
+        band.height = MIN(128u, frame->height - y);
+        band.px = plane->px + (gsize)y * plane->width * plane->channels;
+        plain_fill(f, &band);
+        double begin = thread_time();
+        t->bytes[exr] += t->zlib ? zlib_band(f, &z, t) : compress_band(f, (uint32_t)t->level);
+        t->seconds[exr] += thread_time() - begin;
+    }
+    if (t->zlib && !exr)
+        deflateEnd(&z);
+    plain_free(f);
+    plane_free(plane);
+}
+
+void compare_compressors(const VenLeaf *leaf, uint32_t size)
+{
+    Trial trial[] = {{"ISA-L 0", FALSE, 0, 0, -1, {0}, {0}},          {"ISA-L 1", FALSE, 1, 0, -1, {0}, {0}},
+                     {"ISA-L 1, all plain", FALSE, 1, 0, NONE, {0}, {0}}, {"ISA-L 1, all Sub", FALSE, 1, 0, SUB, {0}, {0}},
+                     {"ISA-L 1, all Up", FALSE, 1, 0, UP, {0}, {0}},  {"ISA-L 1, all Paeth", FALSE, 1, 0, PAETH, {0}, {0}},
+                     {"ISA-L 2", FALSE, 2, 0, -1, {0}, {0}},          {"ISA-L 3", FALSE, 3, 0, -1, {0}, {0}},
+                     {"zlib 1", TRUE, 1, Z_DEFAULT_STRATEGY, -1, {0}, {0}}, {"zlib 2", TRUE, 2, Z_DEFAULT_STRATEGY, -1, {0}, {0}},
+                     {"zlib 1, all Paeth, runs", TRUE, 1, Z_RLE, PAETH, {0}, {0}}, {"zlib 4", TRUE, 4, Z_DEFAULT_STRATEGY, -1, {0}, {0}}};
+    Frame frame = frame_fit(leaf->net->margin->box, size, TRUE, 0.02);
+    PaintStyle style = settings_style(leaf->params, leaf->seed, 1);
+    Painter *painter = painter_new(leaf->net, &frame, &style);
+    printf("\ncompressing maps of %u pixels, s of processor time, MB; Up and plain labels unless said otherwise\n%-26s png            exr\n", size, "");
+    for (gsize i = 0; i < G_N_ELEMENTS(trial); i++) {
+        Trial *t = &trial[i];
+        for (int id = 0; id < MAP_COUNT; id++)
+            for (int exr = 0; exr < (t->filter < 0 ? 2 : 1); exr++)
+                try_map(painter, &frame, (MapId)id, exr, t);
+        printf("%-26s %5.2f %6.2f", t->name, t->seconds[0], (double)t->bytes[0] * 1e-6);
+        if (t->filter < 0)
+            printf("   %5.2f %6.2f", t->seconds[1], (double)t->bytes[1] * 1e-6);
+        puts("");
+    }
+    painter_free(painter);
+}

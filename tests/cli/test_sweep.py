@@ -1,0 +1,368 @@
+#!/usr/bin/env python3
+"""Sweeps: what they write, what they refuse, and that neither threads, shards nor kills change a byte. Emits TAP.
+
+    test_sweep.py VENATION
+"""
+import csv
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+from command import *
+
+LEAF = """\
+[leaf]
+title = Small leaf
+[outline]
+file = blade.svg
+[growth]
+kind = isogonic
+initial_length = 20
+final_length = 60
+step = 4
+[sources]
+density = 0.01
+birth_distance_sources = 4
+birth_distance_veins = 4
+[veins]
+kill_distance = 2
+[texture]
+size = 64
+"""
+BLADE = '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0,0 C-50,-20 -40,-80 0,-100 C40,-80 50,-20 0,0 Z"/></svg>\n'
+GRID = """\
+[sweep]
+params = leaf.ini
+veins.kill_distance = 1; 2; 4
+veins.pattern = open | closed
+seed = 1; 2
+"""
+
+
+def sweep_file(text=GRID, name="many.ini"):
+    write("leaf.ini", LEAF)
+    write("blade.svg", BLADE)
+    return write(name, text)
+
+
+def sweep(*args, status=0):
+    result = run("sweep", *args)
+    same(result.status, status, f"exit status (stderr {result.err!r})")
+    return result
+
+
+def rows(folder):
+    with open(os.path.join(folder, "manifest.jsonl"), encoding="utf-8") as file:
+        return [json.loads(line) for line in file]
+
+
+def stop_at_random(args, moment):
+    """Starts a sweep and kills it after so many seconds; True if it had not ended by then."""
+    process = subprocess.Popen([VENATION, "sweep", *args], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment())
+    try:
+        process.wait(moment)
+        return False
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        return True
+
+
+# --- what it writes -------------------------------------------------------------------------------------------
+
+def test_grid():
+    sweep(sweep_file(), "-q")
+    found = rows("out/many")
+    same(len(found), 12)
+    same([(r["veins.kill_distance"], r["veins.pattern"], r["seed"]) for r in found],
+         [(d, p, s) for d in (1, 2, 4) for p in ("open", "closed") for s in (1, 2)])
+    same({r["outcome"] for r in found}, {"grown"})
+    same(len({r["variant"] for r in found}), 12, "different names")
+    same(len({r["network_hash"] for r in found}), 12, "different leaves")
+    for row in found:
+        folder = os.path.join("out/many", row["folder"])
+        for suffix in (".json", ".svg", ".graphml", "_base_color.png", "_vein_mask.exr"):
+            if not os.path.getsize(f"{folder}/{row['variant']}{suffix}"):
+                raise AssertionError(suffix)
+        record = json.loads(open(f"{folder}/{row['variant']}.json", encoding="utf-8").read())
+        same(record["network"]["nodes"], row["nodes"])
+        same(record["network"]["hash"], row["network_hash"])
+    for name in ("sheet.png", "sheet.svg", "index.html", "manifest.csv"):
+        if not os.path.getsize(f"out/many/{name}"):
+            raise AssertionError(name)
+    same([n for n in os.listdir("out/many") if n.startswith(".")], [], "hidden folders")
+
+
+def test_table_of_rows_says_the_same():
+    sweep(sweep_file(), "-q", "--write", "none")
+    with open("out/many/manifest.csv", encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    for cells, row in zip(table, rows("out/many"), strict=True):
+        same(set(cells), set(row))
+        for name, value in row.items():
+            cell = cells[name]
+            same(float(cell) if isinstance(value, (int, float)) else (cell or None), value, name)
+
+
+def test_zip_and_sample():
+    sweep(sweep_file("[sweep]\nparams = leaf.ini\nmode = zip\nveins.kill_distance = 1; 2; 4\nwidth.minimum = 0.5; 0.4; 0.3\n"), "-q", "--write", "none")
+    same([(r["veins.kill_distance"], r["width.minimum"]) for r in rows("out/many")], [(1, 0.5), (2, 0.4), (4, 0.3)])
+    sweep(sweep_file("[sweep]\nparams = leaf.ini\nmode = sample\ncount = 7\nseed = each\nveins.kill_distance = uniform(1, 4)\n", "some.ini"), "-q", "--write", "none")
+    found = rows("out/some")
+    same([r["seed"] for r in found], [1, 2, 3, 4, 5, 6, 7])
+    same(all(1 <= r["veins.kill_distance"] <= 4 for r in found), True)
+    same(len({r["veins.kill_distance"] for r in found}), 7)
+
+
+def test_alone_as_in_the_sweep():
+    sweep(sweep_file(), "-q", "--cell", "0")
+    row = rows("out/many")[9]
+    result = run("grow", "leaf.ini", "-q", "-o", "alone", "--name", row["variant"], "--seed", str(row["seed"]),
+                 "--set", f"veins.kill_distance={row['veins.kill_distance']}", "--set", f"veins.pattern={row['veins.pattern']}")
+    same(result.status, 0, result.err)
+    there = contents(os.path.join("out/many", row["folder"]))
+    del there["sweep.json"]
+    same(files("alone"), sorted(there))
+    same(contents("alone"), there)
+
+
+def test_what_is_written():
+    for what, wanted in (("none", [".json"]), ("svg", [".json", ".svg"]), ("network", [".graphml", ".json", "_edges.csv", "_nodes.csv"])):
+        sweep(sweep_file(), "-q", "-o", what, "--write", what, "--cell", "0")
+        row = rows(what)[0]
+        same(files(os.path.join(what, row["folder"])), sorted([row["variant"] + s for s in wanted] + ["sweep.json"]))
+    sweep(sweep_file("[sweep]\nparams = leaf.ini\nveins.kill_distance = 2\n"), "-q", "-o", "mesh", "--write", "mesh,maps", "--maps", "opacity", "--cell", "0")
+    row = rows("mesh")[0]
+    same(os.path.exists(f"mesh/{row['folder']}/{row['variant']}.glb"), True)
+    holds(run("sweep", "many.ini", "--write", "map").err, "--write map: must be none, or names out of maps svg network mesh")
+
+
+def test_dry_run():
+    result = sweep(sweep_file(), "--dry-run", "--cell", "0")
+    same(len(result.out.splitlines()), 12)
+    holds(result.out, "veins.kill_distance=4 veins.pattern=closed seed=2")
+    holds(result.err, "12 variants of about ")
+    same(os.path.exists("out"), False)
+    lines = sweep("many.ini", "--dry-run", "-q", "--shard", "2/5").out.splitlines()
+    same([int(line.split()[0]) for line in lines], [1, 6, 11])
+
+
+# --- training data ------------------------------------------------------------------------------------------------
+
+def read_png(name):
+    """Width, height and values of a grey or RGB PNG, row by row."""
+    with open(name, "rb") as file:
+        data = file.read()
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", body[:10])
+        packed += body if kind == b"IDAT" else b""
+        at += length + 12
+    step = depth // 8 * (3 if colour == 2 else 1)
+    raw, stride, before, values = zlib.decompress(packed), width * step, bytes(width * step), []
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = (line[i - step] if i >= step else 0), before[i], (before[i - step] if i >= step else 0)
+            p = (abs(b - c), abs(a - c), abs(a + b - 2 * c))
+            paeth = a if p[0] <= p[1] and p[0] <= p[2] else b if p[1] <= p[2] else c
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[kind]) & 255
+        values += struct.unpack(f">{width}H", line) if depth == 16 else list(line)
+        before = line
+    return width, height, values
+
+
+def inside(ring, x, y):
+    points = list(zip(ring[::2], ring[1::2]))
+    return sum((a[1] > y) != (b[1] > y) and x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) for a, b in zip(points, points[1:] + points[:1])) % 2 == 1
+
+
+def shoelace(ring):
+    points = list(zip(ring[::2], ring[1::2]))
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, points[1:] + points[:1]))) / 2
+
+
+def check_annotations(split):
+    with open(f"out/many/dataset/annotations/{split}.json", encoding="utf-8") as file:
+        coco = json.loads(file.read())
+    same([c["name"] for c in coco["categories"]], ["lamina", "areole", "vein"])
+    same(sorted(i["file_name"] for i in coco["images"]), sorted(os.listdir(f"out/many/dataset/images/{split}")))
+    if sum(a["category_id"] == 2 for a in coco["annotations"]) < 10:
+        raise AssertionError("hardly any areoles: the test shows nothing")
+    same(len({a["id"] for a in coco["annotations"]}), len(coco["annotations"]), "different numbers")
+    for image in coco["images"]:
+        marks = [a for a in coco["annotations"] if a["image_id"] == image["id"]]
+        same([a["category_id"] for a in marks], [1] + [2] * (len(marks) - 2) + [3])
+        masks = {}
+        for kind in ("images", "lamina", "vein", "order", "areole"):
+            width, height, masks[kind] = read_png(f"out/many/dataset/{kind}/{split}/{image['file_name']}")
+            same((width, height), (image["width"], image["height"]))
+        for a in marks[:-1]:
+            ring = a["segmentation"][0]
+            same(all(0 <= v <= width for v in ring), True)
+            same(abs(shoelace(ring) - a["area"]) <= 0.02 * a["area"] + 2, True, f"area {a['area']} of {shoelace(ring)}")
+            xs, ys = ring[::2], ring[1::2]
+            for found, wanted in zip(a["bbox"], (min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys))):
+                same(abs(found - wanted) < 1, True, "box")
+        same(abs(marks[0]["area"] - sum(masks["lamina"]) / 255) < 0.01 * marks[0]["area"], True, "lamina")
+        runs, at = marks[-1]["segmentation"]["counts"], 0
+        same(sum(runs), width * height)
+        for k, run_length in enumerate(runs):
+            for i in range(at, at + run_length):
+                if (masks["vein"][i % height * width + i // height] >= 128) != (k % 2 == 1) and masks["vein"][i % height * width + i // height] != 127:
+                    raise AssertionError(f"pixel {i} of {image['file_name']}")
+            at += run_length
+        # Pixels of an areole's label lie in its polygon, but for those on its edge.
+        for label, a in enumerate(marks[1:-1], 1):
+            pixels = [i for i, v in enumerate(masks["areole"]) if v == label]
+            outside = sum(not inside(a["segmentation"][0], i % width + 0.5, i // width + 0.5) for i in pixels)
+            same(outside <= 0.1 * len(pixels) + 1, True, f"areole {label}: {outside} of {len(pixels)} outside")
+        same(max(masks["areole"]) <= len(marks) - 2, True, "labels")
+    return {i["file_name"] for i in coco["images"]}
+
+
+DATASET = "[sweep]\nparams = leaf.ini\nmode = sample\ncount = 10\nseed = each\nveins.kill_distance = uniform(1, 2)\n"
+
+
+def test_dataset():
+    sweep(sweep_file(DATASET), "-q", "--dataset", "--size", "96", "--validation", "0.4")
+    train, val = check_annotations("train"), check_annotations("val")
+    same((len(train | val), len(train & val)), (10, 0))
+    same(bool(train) and bool(val), True, "both have some")
+    holds(open("out/many/dataset/README.txt", encoding="utf-8").read(), f"{len(train)} to train with, {len(val)} to validate")
+    for i in (1, 2, 3):
+        sweep("many.ini", "-q", "--dataset", "--size", "96", "--shard", f"{i}/3", "-o", "shards")
+    sweep("many.ini", "-q", "--dataset", "--size", "96", "--validation", "0.4", "-o", "shards", "--collect")
+    same(contents("shards") == contents("out/many"), True, "three shards")
+
+
+def test_dataset_parts_by_seed():
+    sweep(sweep_file("[sweep]\nparams = leaf.ini\nseed = from 1 to 8 by 1\nveins.kill_distance = 1; 2\n"), "-q", "--dataset", "--size", "32", "--cell", "0")
+    side = {}
+    for split in ("train", "val"):
+        for name in os.listdir(f"out/many/dataset/images/{split}"):
+            side.setdefault(re.search(r"seed-(\d+)", name).group(1), set()).add(split)
+    same(len(side), 8)
+    same({len(s) for s in side.values()}, {1}, "leaves of one seed are on one side")
+
+
+# --- whichever way it is made -----------------------------------------------------------------------------------
+
+def test_threads_shards_and_order():
+    sweep(sweep_file(), "-q", "--threads", "1", "-o", "one")
+    sweep("many.ini", "-q", "--threads", "2", "-o", "two")
+    for part in (3, 1, 2):
+        sweep("many.ini", "-q", "--shard", f"{part}/3", "-o", "shards")
+    sweep("many.ini", "-q", "--collect", "-o", "shards")
+    wanted = contents("one")
+    same(contents("two") == wanted, True, "two threads")
+    same(files("shards"), sorted(wanted))
+    same(contents("shards") == wanted, True, "three shards")
+
+
+def test_killed_at_any_moment():
+    sweep(sweep_file(), "-q", "-o", "whole")
+    began = time.monotonic()
+    sweep("many.ini", "-q", "-o", "whole", "--set", "leaf.title=Once more")
+    took = time.monotonic() - began
+    shutil.rmtree("whole")
+    sweep("many.ini", "-q", "-o", "whole")
+    chance, killed = random.Random(7), 0
+    for _ in range(10):
+        killed += stop_at_random(["many.ini", "-q", "-o", "killed"], chance.uniform(0.02, 0.25 * took))
+        for d, folders, names in os.walk("killed/leaves"):  # whole or not there
+            if not folders and "sweep.json" not in names:
+                raise AssertionError(f"{d}: half there: {names}")
+    if killed < 3:
+        raise AssertionError(f"killed {killed} times only")
+    sweep("many.ini", "-q", "-o", "killed")
+    same(files("killed"), files("whole"))
+    same(contents("killed") == contents("whole"), True, "after kills")
+
+
+def test_interrupted():
+    sweep_file()
+    process = subprocess.Popen([VENATION, "sweep", "many.ini", "--set", "growth.final_length=200"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment())
+    while process.poll() is None and not (os.path.isdir("out/many/leaves") and os.listdir("out/many/leaves")):
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=TIMEOUT)
+    same(process.returncode, 128 + signal.SIGINT)
+    holds(told.decode(), "goes on from there")
+    same([n for n in os.listdir("out/many") if n.startswith(".")], [], "hidden folders")
+
+
+def test_does_only_what_is_missing():
+    sweep(sweep_file(), "-q")
+    first = rows("out/many")
+    kept = f"out/many/{first[0]['folder']}/sweep.json"
+    age = os.stat(kept).st_mtime_ns
+    shutil.rmtree(f"out/many/{first[5]['folder']}")
+    holds(sweep("many.ini").err, "1 leaf grown, 11 were there")
+    same(os.stat(kept).st_mtime_ns, age)
+    same(rows("out/many"), first)
+    # Other parameters, another outline: other leaves.
+    holds(sweep("many.ini", "--set", "width.exponent=3").err, "12 leaves grown, 0 were there")
+    write("blade.svg", BLADE.replace("-50", "-60"))
+    holds(sweep("many.ini", "--set", "width.exponent=3").err, "12 leaves grown, 0 were there")
+    holds(sweep("many.ini", "--collect", status=3).err, "12 missing")
+
+
+def test_failures_are_kept_apart():
+    text = "[sweep]\nparams = leaf.ini\nmode = zip\ngrowth.initial_length = 20; 90; 30\n"
+    result = sweep(sweep_file(text), status=3)
+    holds(result.err, "2 leaves grown, 0 were there, 1 failed (out/many/failed)")
+    found = rows("out/many")
+    same([r["outcome"] for r in found], ["grown", "failed", "grown"])
+    holds(found[1]["error"], "initial_length")
+    same(os.listdir("out/many/failed"), [found[1]["variant"] + ".json"])
+    same(len(os.listdir("out/many/leaves")), 2)
+    holds(sweep("many.ini", status=3).err, "0 leaves grown, 2 were there, 1 failed")
+    holds(sweep("many.ini", "--set", "growth.final_length=100").err, "3 leaves grown")
+    same(os.listdir("out/many/failed"), [])
+
+
+def test_full_disk_stops_the_run():
+    small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+    sweep_file()
+    result = run("sweep", "many.ini", before=small)
+    same(result.status, 1)
+    holds(result.err, "out/many/leaves/")
+    same(os.path.exists("out/many/failed"), False)
+
+
+# --- what it refuses --------------------------------------------------------------------------------------------
+
+def test_refusals():
+    cases = {
+        "veins.kil_distance = 1; 2": "veins.kill_distance",
+        "veins.kill_distance =": "veins.kill_distance",
+        "veins.kill_distance = 1; -2": "-2",
+        "seed = from 1 to 1000000000 by 1": "1000000000",
+        "mode = zip\nname = ../a; b\nveins.kill_distance = 1; 2": "would leave the folder",
+    }
+    for lines, part in cases.items():
+        sweep_file(f"[sweep]\nparams = leaf.ini\n{lines}\n")
+        check_refused(run("sweep", "many.ini"), 3, "many.ini", part)
+    check_refused(run("sweep", "nothing.ini"), 3, "nothing.ini")
+    sweep_file()
+    check_refused(run("sweep", "many.ini", "--set", "veins.kill_distance=3"), 3, "many.ini gives veins.kill_distance its values")
+    for args in (["--shard", "0/3"], ["--shard", "4/3"], ["--shard", "3"], ["--shard", "1/2", "--collect"], ["--cell", "9999"], ["--picture", "leaf"], []):
+        result = run("sweep", *(["many.ini"] if args else []), *args)
+        same(result.status, 2, f"{args}: {result.err!r}")
+
+
+if __name__ == "__main__":
+    sys.exit(main(globals()))
