@@ -57,7 +57,27 @@ static void put_key(const Sweep *s, uint32_t k, GString *text)
     g_free(label);
 }
 
-static void put_sweep(const Sweep *s, const char *title, uint64_t chunks, GString *text)
+/* What all variants were grown with over the parameter file's values, as arguments of --set. */
+static void put_settings(const Sweep *s, const Params *params, GString *text)
+{
+    bool any = false;
+    g_string_append(text, ",\"set\":[");
+    for (int i = 0; i < PARAM_COUNT; i++) {
+        char *now = params_format(params, (ParamId)i), *before = params_format(sweep_params(s), (ParamId)i);
+        if (strcmp(now, before) != 0) {
+            char *assignment = g_strdup_printf("%s.%s=%s", param_info((ParamId)i)->section, param_info((ParamId)i)->key, now);
+            g_string_append(text, any ? "," : "");
+            page_string(text, assignment);
+            g_free(assignment);
+            any = true;
+        }
+        g_free(now);
+        g_free(before);
+    }
+    g_string_append_c(text, ']');
+}
+
+static void put_sweep(const Sweep *s, const Params *params, const char *title, uint64_t chunks, GString *text)
 {
     static const char *const mode[] = {"grid", "zip", "sample"};
     char *folder = g_path_get_dirname(sweep_path(s)), *file = g_path_get_basename(sweep_path(s));
@@ -67,6 +87,7 @@ static void put_sweep(const Sweep *s, const char *title, uint64_t chunks, GStrin
     member(text, "mode", mode[sweep_mode(s)]);
     member(text, "params", sweep_params_path(s));
     member(text, "folder", folder); /* where FILE values start */
+    put_settings(s, params, text);
     g_string_append_printf(text, ",\"count\":%" G_GUINT64_FORMAT ",\"chunks\":%" G_GUINT64_FORMAT ",\"keys\":[", sweep_count(s), chunks);
     for (uint32_t k = 0; k < sweep_keys(s); k++)
         put_key(s, k, text);
@@ -142,7 +163,7 @@ static void add_resource(GString *text, const char *name, const char *title)
     g_free(path);
 }
 
-gboolean page_write(const Sweep *s, const char *out, const char *title, GError **error)
+gboolean page_write(const Sweep *s, const Params *params, const char *out, const char *title, GError **error)
 {
     uint64_t chunks = (sweep_count(s) + PAGE_CHUNK - 1) / PAGE_CHUNK;
     char *folder = g_build_filename(out, "page", NULL), *own = g_path_get_basename(sweep_path(s));
@@ -153,7 +174,7 @@ gboolean page_write(const Sweep *s, const char *out, const char *title, GError *
     if (!ok)
         staged_error(folder, errno, error);
     ok = ok && write_chunks(s, out, chunks, error);
-    put_sweep(s, title ? title : own, chunks, text);
+    put_sweep(s, params, title ? title : own, chunks, text);
     ok = ok && write_text(out, "page/sweep.js", text, error);
     g_string_truncate(text, 0);
     add_resource(text, "page.html", title ? title : own);

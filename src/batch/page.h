@@ -4,7 +4,8 @@
 
 #include "batch/rows.h"
 
-/* Writes <out>/index.html and the data it loads, from the variants' rows. Memory does not go with the number of variants. */
-gboolean page_write(const Sweep *s, const char *out, const char *title, GError **error);
+/* Writes <out>/index.html and the data it loads, from the variants' rows. `params` are the sweep's, or a copy with what was set over
+ * it, for the command that grows a leaf alone. Memory does not go with the number of variants. */
+gboolean page_write(const Sweep *s, const Params *params, const char *out, const char *title, GError **error);
 
 #endif

@@ -466,6 +466,7 @@ function command(row) {
   const words = ["venation grow " + quote(sweep.params)];
   const seed = at("seed", row);
   if (seed !== null && seed !== undefined) words.push("--seed " + quote(String(seed)));
+  for (const assignment of sweep.set) words.push("--set " + quote(assignment));
   for (const k of sweep.keys) {
     let v = at(k.key, row);
     if (k.key === "seed" || v === null) continue;

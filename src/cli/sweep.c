@@ -250,7 +250,8 @@ static gboolean collect(Sweeping *w, BatchCount *count, GError **error)
 {
     progress_say(w->progress, ": collecting");
     const SheetDef sheet = {.cell = (uint32_t)w->cell};
-    gboolean ok = manifest_write(&w->def, count, error) && (!w->args->dataset || dataset_write(&w->def, w->validation, error)) && (!w->cell || (sheet_write(w->sweep, w->dir, &sheet, error) && page_write(w->sweep, w->dir, w->name, error)));
+    gboolean ok = manifest_write(&w->def, count, error) && (!w->args->dataset || dataset_write(&w->def, w->validation, error)) &&
+                  (!w->cell || (sheet_write(w->sweep, w->dir, &sheet, error) && page_write(w->sweep, w->params, w->dir, w->name, error)));
     progress_clear(w->progress);
     return ok;
 }

@@ -1,5 +1,6 @@
 #include "geom/svgwalk.h"
 
+#include "geom/svgentity.h"
 #include "geom/svgscan.h"
 #include "geom/svgstyle.h"
 #include "geom/textfile.h"
@@ -373,6 +374,11 @@ bool svgwalk_file(const char *file, SvgSeen see, void *user, GError **error)
     gsize length;
     if (!textfile_read(file, LARGEST_FILE, &text, &length, error))
         return false;
+    char *expanded = svgentity_expand(text, &length, LARGEST_FILE);
+    if (expanded) {
+        g_free(text);
+        text = expanded;
+    }
     gsize mark = length >= 3 && !memcmp(text, "\xEF\xBB\xBF", 3) ? 3 : 0; /* byte order mark */
     Walk w = {g_ptr_array_new_with_free_func(element_free), read_sheets(text + mark, length - mark), see, user};
     bool good = parse_markup(&w, file, text + mark, length - mark, error);

@@ -151,6 +151,10 @@ static double apart(VenLeaf *leaf, uint32_t size, const char *dir)
     Painter *painter = painter_new(leaf->net, &frame, &style);
     Cost cost[MAP_COUNT + 1] = {{0}}, sum = {0};
     Page *page = g_new0(Page, MAP_COUNT + 1);
+    gboolean all[MAP_COUNT];
+    for (int id = 0; id < MAP_COUNT; id++)
+        all[id] = TRUE;
+    painter_expect(painter, all);
     cost[0].paint = processor() - begin;
     uint32_t rows = MAX((1u << 19) / frame.width / 32 * 32, 32u);
     for (uint32_t y = 0; y < frame.height; y += rows) {
@@ -221,7 +225,8 @@ static void a_minute(VenLeaf *leaf, const char *what, const char *maps, uint32_t
     set_size(leaf, size);
     for (unsigned threads = 1; threads <= 2; threads++) {
         Seconds s = write_set(leaf, threads, dir, size < 1024 ? 20 : 3);
-        printf("%s, %u thread%s %6.0f leaves a minute\n", what, threads, threads > 1 ? "s:" : ": ", 60.0 / s.wall);
+        printf("%s, %u pixels, %u thread%s %6.0f leaves a minute, %6.0f a minute of processor time\n", what, size, threads,
+               threads > 1 ? "s:" : ": ", 60.0 / s.wall, 60.0 / s.processor);
     }
     g_free(setting);
 }
@@ -229,6 +234,7 @@ static void a_minute(VenLeaf *leaf, const char *what, const char *maps, uint32_t
 int main(int argc, char **argv)
 {
     GError *error = NULL;
+    setvbuf(stdout, NULL, _IOLBF, 0);
     gboolean quick = FALSE, large = FALSE, compression = FALSE;
     for (int i = 2; i < argc; i++) {
         quick |= strcmp(argv[i], "--quick") == 0;
@@ -248,11 +254,11 @@ int main(int argc, char **argv)
     set(leaf, "export.network=no");
     printf("%u vein edges\n", ven_leaf_edges(leaf));
     if (compression)
-        compare_compressors(leaf, 2048);
+        compare_compressors(leaf, quick ? 1024 : 2048);
     for (uint32_t size = quick ? 1024 : 2048; size <= (quick ? 1024u : large ? 8192u : 4096u); size *= 2)
         whole(leaf, size, apart(leaf, size, dir), dir);
-    a_minute(leaf, "training leaf, 512 pixels, 3 maps", "base_color vein_mask vein_order", 512, dir);
-    a_minute(leaf, "full set, 2048 pixels", "all", quick ? 1024 : 2048, dir);
+    a_minute(leaf, "training leaf, 3 maps", "base_color vein_mask vein_order", 512, dir);
+    a_minute(leaf, "full set", "all", quick ? 1024 : 2048, dir);
     g_rmdir(dir);
     g_free(dir);
     ven_leaf_free(leaf);

@@ -189,10 +189,8 @@ static gsize zlib_band(const Plain *f, z_stream *z, const Trial *t)
     return sum;
 }
 
-static void try_map(Painter *painter, const Frame *frame, MapId id, gboolean exr, Trial *t)
+static void try_map(const Plane *plane, gboolean wide, gboolean exr, Trial *t)
 {
-    gboolean wide = id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
-    Plane *plane = painter_paint(painter, id);
     Plain *f = plain_new(exr ? PLAIN_EXR : PLAIN_PNG, plane, wide ? 16 : 8);
     z_stream z = {0};
     if (t->filter >= 0)
@@ -201,9 +199,9 @@ static void try_map(Painter *painter, const Frame *frame, MapId id, gboolean exr
         deflateInit2(&z, t->level, Z_DEFLATED, 15, 8, t->strategy);
     else
         begin_stream(&f->stream, (uint32_t)t->level, f->memory);
-    for (uint32_t y = 0; y < frame->height; y += 128) {
+    for (uint32_t y = 0; y < plane->height; y += 128) {
         Plane band = *plane;
-        band.height = MIN(128u, frame->height - y);
+        band.height = MIN(128u, plane->height - y);
         band.px = plane->px + (gsize)y * plane->width * plane->channels;
         plain_fill(f, &band);
         double begin = thread_time();
@@ -213,7 +211,6 @@ static void try_map(Painter *painter, const Frame *frame, MapId id, gboolean exr
     if (t->zlib && !exr)
         deflateEnd(&z);
     plain_free(f);
-    plane_free(plane);
 }
 
 void compare_compressors(const VenLeaf *leaf, uint32_t size)
@@ -227,12 +224,21 @@ void compare_compressors(const VenLeaf *leaf, uint32_t size)
     Frame frame = frame_fit(leaf->net->margin->box, size, TRUE, 0.02);
     PaintStyle style = settings_style(leaf->params, leaf->seed, 1);
     Painter *painter = painter_new(leaf->net, &frame, &style);
+    gboolean all[MAP_COUNT];
+    for (int id = 0; id < MAP_COUNT; id++)
+        all[id] = TRUE;
+    painter_expect(painter, all);
+    for (int id = 0; id < MAP_COUNT; id++) {
+        Plane *plane = painter_paint(painter, (MapId)id);
+        gboolean wide = id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
+        for (gsize i = 0; i < G_N_ELEMENTS(trial); i++)
+            for (int exr = 0; exr < (trial[i].filter < 0 ? 2 : 1); exr++)
+                try_map(plane, wide, exr, &trial[i]);
+        plane_free(plane);
+    }
     printf("\ncompressing maps of %u pixels, s of processor time, MB; Up and plain labels unless said otherwise\n%-26s png            exr\n", size, "");
     for (gsize i = 0; i < G_N_ELEMENTS(trial); i++) {
-        Trial *t = &trial[i];
-        for (int id = 0; id < MAP_COUNT; id++)
-            for (int exr = 0; exr < (t->filter < 0 ? 2 : 1); exr++)
-                try_map(painter, &frame, (MapId)id, exr, t);
+        const Trial *t = &trial[i];
         printf("%-26s %5.2f %6.2f", t->name, t->seconds[0], (double)t->bytes[0] * 1e-6);
         if (t->filter < 0)
             printf("   %5.2f %6.2f", t->seconds[1], (double)t->bytes[1] * 1e-6);

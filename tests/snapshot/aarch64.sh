@@ -37,4 +37,5 @@ meson setup "$tmp/build" "$root" --cross-file "$tmp/cross" -Ddefault_library=sta
 ninja -C "$tmp/build" src/venation >"$tmp/log" || { cat "$tmp/log" >&2; exit 1; }
 printf '#!/bin/sh\nexec qemu-aarch64 -L "%s" "%s" "$@"\n' "$sys" "$tmp/build/src/venation" >"$tmp/venation"
 chmod +x "$tmp/venation"
+[ -z "${KEEP-}" ] || cp "$tmp/build/src/venation" "$KEEP"
 "$root/tests/snapshot/snapshot.py" "$tmp/venation" "$root/params" "$root/tests/snapshot/snapshot.txt"

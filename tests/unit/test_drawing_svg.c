@@ -8,8 +8,8 @@
 #include "import/drawing_file.h"
 
 #define HEAD \
-    "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?>\n<svg width=\"210mm\" height=\"297mm\" viewBox=\"0 0 210 297\" " \
-    "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" xmlns=\"http://www.w3.org/2000/svg\">\n" \
+    "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?>\n<!DOCTYPE svg [ <!ENTITY ns \"http://ns\"> ]>\n" \
+    "<svg xmlns:x=\"&ns;\" width=\"210mm\" height=\"297mm\" viewBox=\"0 0 210 297\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" xmlns=\"http://www.w3.org/2000/svg\">\n" \
     "<sodipodi:namedview id=\"namedview7\" inkscape:current-layer=\"layer2\"/>\n<defs id=\"defs2\"><path id=\"arrow\" d=\"M 0,0 5,5\"/></defs>\n"
 
 static Drawing *read_bytes(const char *text, gsize length, GError **error)
@@ -201,6 +201,8 @@ static void test_widths(void)
     WIDE("<svg><path transform='scale(0,1)' stroke-width='3' d='M0 0 1 1'/></svg>", 1, 0);
 }
 
+static void check_error(const char *text, ImportErrorCode code, const char *says);
+
 /* As Illustrator and Inkscape write styles of several elements at once. */
 static void test_sheets(void)
 {
@@ -232,6 +234,20 @@ static void test_empty(void)
     ALL("<svg><g id='veins'/></svg>", 0, 0);
     ALL("<svg>" P "<g inkscape:label='Veins'><g id='primary'><title>none</title></g></g></svg>", 0, 0);
     ALL("<svg><g id='veins'><path d=''/></g></svg>", 0, 0);
+}
+
+/* Illustrator declares its namespaces as entities. */
+static void test_entities(void)
+{
+#define DOCTYPE "<!DOCTYPE svg PUBLIC \"-//W3C//DTD SVG 1.1//EN\" \"svg11.dtd\" [\n <!ENTITY ns_ai \"http://ns.adobe.com/ai/\">\n" \
+    "<!ENTITY w '3'><!ENTITY w '4'> <!ENTITY loop \"&loop;\"><!ENTITY many \"&w;&w;\"> <!ENTITY % p \"x\"> ]>\n"
+    WIDE(DOCTYPE "<svg xmlns:i='&ns_ai;'><path d='M0 0 1 1' stroke-width='&w;' id='a&amp;b'/></svg>", 1, 3);
+    WIDE("<!DOCTYPE svg>\n<svg><path d='M0 0 1 1' id='[x]' stroke-width='2'/></svg>", 1, 2);
+    check_error(DOCTYPE "<svg id='&loop;'/>", IMPORT_ERROR_SYNTAX, "loop");
+    check_error(DOCTYPE "<svg id='&many;'/>", IMPORT_ERROR_SYNTAX, "many");
+    check_error(DOCTYPE "<svg>\n<g id='veins'><path d='M0 0 &w; q'/></g></svg>", IMPORT_ERROR_SYNTAX, "line 5");
+    check_error("<!DOCTYPE svg [ <!ENTITY w '3'>", IMPORT_ERROR_SYNTAX, "not an SVG file");
+    check_error("<!DOCTYPE svg [ <!ENTITY w ", IMPORT_ERROR_SYNTAX, "not an SVG file");
 }
 
 static Vec2 origin_of(const char *inner)
@@ -406,6 +422,7 @@ int main(int argc, char **argv)
     g_test_add_func("/drawing-svg/sheets", test_sheets);
     g_test_add_func("/drawing-svg/empty", test_empty);
     g_test_add_func("/drawing-svg/inner", test_inner);
+    g_test_add_func("/drawing-svg/entities", test_entities);
     g_test_add_func("/drawing-svg/outline", test_outline);
     g_test_add_func("/drawing-svg/errors", test_errors);
     g_test_add_func("/drawing-svg/broken", test_broken);

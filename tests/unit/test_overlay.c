@@ -104,6 +104,7 @@ static void test_images(void)
     check_place(PAGE "<image/></svg>", vec2(400, 300), 400, 300, "");
     /* which of several: by its name, else the largest; not one that is only defined, nor one without size */
     check_place(PAGE "<image width='4' height='3' href='leaf.jpg'/><image width='40' height='30' href='logo.jpg'/></svg>", vec2(4, 3), 400, 300, "'leaf.jpg'");
+    check_place(PAGE "<image width='40' height='30' href='logo.jpg'/><image width='4' height='3' href='leaf.jpg'/></svg>", vec2(4, 3), 400, 300, "'leaf.jpg'");
     check_place(PAGE "<image width='4' height='3'/><image width='40' height='30'/><image width='8' height='6'/></svg>", vec2(40, 30), 400, 300, "");
     check_place(PAGE "<image width='4' height='3'/><g transform='scale(20)'><image width='4' height='3'/></g></svg>", vec2(80, 60), 400, 300, "");
     check_place(PAGE "<defs><image width='40' height='30' href='leaf.jpg'/></defs><image width='4' height='3'/></svg>", vec2(4, 3), 400, 300, "");

@@ -615,6 +615,37 @@ static void test_normals(void)
     network_free(net);
 }
 
+/* Normals are those of the height map: differences over two pixels, over one where the blade ends; the image's last pixel is its own neighbour. */
+static void test_normals_of_heights(void)
+{
+    Network *net = net_tree(60, 15, 2.0, 8);
+    Frame f = {131, 170, 5.0, {-15.0, 36.0}}; /* cuts through the blade */
+    Frame around = {210, 230, 5.0, {-21.0, 43.0}};
+    for (int k = 0; k < 2; k++) {
+        Painter *p = painter_at(net, k == 0 ? &f : &around, 2);
+        Plane *h = painter_paint(p, MAP_HEIGHT), *n = painter_paint(p, MAP_NORMAL_GL), *o = painter_paint(p, MAP_OPACITY);
+        int32_t w = (int32_t)h->width, rows = (int32_t)h->height;
+        for (int32_t i = 0; i < w * rows; i++) {
+            const int32_t x = i % w, y = i / w, step[2] = {1, -w}, at[2] = {x, rows - 1 - y}, last[2] = {w - 1, rows - 1};
+            double d[2] = {0.0, 0.0};
+            for (int a = 0; a < 2 && o->px[i] > 0.0f; a++) {
+                int32_t from = at[a] > 0 ? i - step[a] : i, to = at[a] < last[a] ? i + step[a] : i;
+                bool has_from = o->px[from] > 0.0f, has_to = o->px[to] > 0.0f;
+                d[a] = 5.0 * (double)(h->px[has_to ? to : i] - h->px[has_from ? from : i]) / (has_from && has_to ? 2.0 : 1.0);
+            }
+            double length = sqrt(1.0 + d[0] * d[0] + d[1] * d[1]);
+            g_assert_cmpfloat(fabs((double)n->px[3 * i] - 0.5 * (1.0 - d[0] / length)), <, 1e-4);
+            g_assert_cmpfloat(fabs((double)n->px[3 * i + 1] - 0.5 * (1.0 - d[1] / length)), <, 1e-4);
+            g_assert_cmpfloat(fabs((double)n->px[3 * i + 2] - 0.5 * (1.0 + 1.0 / length)), <, 1e-4);
+        }
+        plane_free(h);
+        plane_free(n);
+        plane_free(o);
+        painter_free(p);
+    }
+    network_free(net);
+}
+
 /* Where two equal veins cross they merge in a rounded rise, higher than either and level on top; a veinlet that joins a
  * vein leaves it as it is. */
 static void test_merge(void)
@@ -1060,6 +1091,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/labels/thin", test_thin_labels);
     g_test_add_func("/paint/labels/priority", test_label_priority);
     g_test_add_func("/paint/normals", test_normals);
+    g_test_add_func("/paint/normals/heights", test_normals_of_heights);
     g_test_add_func("/paint/merge", test_merge);
     g_test_add_func("/paint/edge-colour", test_edge_colour);
     g_test_add_func("/paint/small-relief", test_small_relief);
