@@ -432,7 +432,17 @@ const Verb sweep_verb = {
     "manifest.jsonl, with parameters, counts and hashes of all, sheet.png and sheet.svg, a picture of all leaves with what varies along its axes, and index.html, "
     "a page to browse them with.\n\n"
     "Stopped or killed at any time, the same command does what is missing. --shard I/N does one of N parts, on one machine or many that share the folder; "
-    "--collect, with the same options, then writes manifest, sheet and page.",
+    "--collect, with the same options, then writes manifest, sheet and page.\n\n"
+    "A sweep file has one section, [sweep]. 'params' is the parameter file that all variants begin with. 'mode' is grid (every combination, the last key changing fastest; "
+    "the default), zip (the first values of all keys, then the second ones) or sample ('count' variants, drawn by chance). Every other line is a key of the parameter table "
+    "as section.key, or 'seed', the run's ('each': another one for every variant), and its values:\n\n"
+    "5; 10; 20: a list; with '|' where values may hold a ';'.\n\n"
+    "from 1 to 10 by 3, from 1 to 2 in 5, from 1 to 16 in 5 log: ranges, by step or number, evenly spaced or each the same multiple of the one before.\n\n"
+    "uniform(a, b), uniform(a, b, step), log-uniform(a, b), normal(mean, deviation), choice(a; b; c): by chance.\n\n"
+    "'table' names a CSV file whose heading names keys; its rows are one more list. 'name' gives names of variants (mode zip, or a column). 'sample_seed' and 'sequence' "
+    "(random, or halton: evenly spread) are for what is drawn. Paths are relative to the sweep file.\n\n"
+    "With --dataset DIR/dataset holds images and label maps in folders train and val, and COCO annotations of lamina, areoles and veins. How images are taken is in section "
+    "[specimen] of the parameters, which a sweep may vary.",
     options,
     run_sweep,
 };
