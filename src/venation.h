@@ -55,7 +55,8 @@ VEN_API uint32_t ven_scan_count(const VenScan *sheet);
 VEN_API void ven_scan_close(VenScan *sheet);
 
 /* How many nodes the outline of that scan has by side of the marching square and tolerance of simplification (Hong 2005, tables 5.1 and 5.2),
- * with area and perimeter: text for people; free it with g_free. NULL with an error. */
+ * with area and perimeter; with scan.method fang, how well each edge operator finds it: text for people; free it with g_free. NULL with an
+ * error. */
 VEN_API char *ven_scan_table(const VenParams *params, GError **error);
 
 /* What a run reports while it goes on, and how it is told to stop. */

@@ -1,7 +1,12 @@
 #include "cli/interrupt.h"
 
+#include <dirent.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
@@ -19,9 +24,51 @@ struct Interrupt {
     gpointer user;
 };
 
+static atomic_uint still; /* threads that stand still */
+
+static void stand_still(int number)
+{
+    atomic_fetch_add(&still, 1);
+    for (;;)
+        pause();
+}
+
+/* Tells every other thread to stand still; returns how many there are. Those that do already have the signal blocked. */
+static unsigned tell_others(int number)
+{
+    _Alignas(struct dirent64) char entries[2048];
+    int folder = open("/proc/self/task", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    unsigned others = 0;
+    for (ssize_t n; folder >= 0 && (n = getdents64(folder, entries, sizeof entries)) > 0;)
+        for (ssize_t i = 0; i < n;) {
+            const struct dirent64 *entry = (const struct dirent64 *)(const void *)(entries + i);
+            pid_t thread = (pid_t)strtol(entry->d_name, NULL, 10);
+            i += entry->d_reclen;
+            if (thread > 0 && thread != gettid() && tgkill(getpid(), thread, number) == 0)
+                others++;
+        }
+    if (folder >= 0)
+        close(folder);
+    return others;
+}
+
+void interrupt_freeze(void)
+{
+    static atomic_flag frozen = ATOMIC_FLAG_INIT;
+    enum { TRIES = 20000 }; /* two seconds, after which a thread hangs in the kernel and makes nothing */
+    if (atomic_flag_test_and_set(&frozen))
+        for (;;)
+            pause();
+    struct sigaction action = {.sa_handler = stand_still};
+    sigaction(SIGRTMAX, &action, NULL);
+    for (int i = 0; i < TRIES && atomic_load(&still) < tell_others(SIGRTMAX); i++)
+        nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+}
+
 /* Holding the lock, which is never given back: nobody else goes on. */
 static G_GNUC_NORETURN void end(Interrupt *in)
 {
+    interrupt_freeze();
     in->cleanup(in->user);
     _exit(EXIT_SIGNAL + in->came);
 }

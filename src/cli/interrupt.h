@@ -6,7 +6,8 @@
 
 typedef struct Interrupt Interrupt;
 
-/* Runs on the waiting thread just before the process ends. */
+/* Runs on the waiting thread just before the process ends, when all other threads stand still, wherever they are: it must neither allocate nor
+ * take a lock, nor print by stdio. */
 typedef void (*InterruptCleanup)(gpointer user);
 
 /* Blocks the signals in this thread and those it starts from now on. Signals that were ignored (nohup) stay ignored.
@@ -23,6 +24,10 @@ void interrupt_urgent(Interrupt *in);
 
 /* From now on a second signal ends the process, as at the start. */
 void interrupt_polite(Interrupt *in);
+
+/* Makes all other threads stand still for good, so that none makes anew what is being removed. For the thread that ends the process; one that
+ * calls it later stands still too. Neither allocates nor locks. */
+void interrupt_freeze(void);
 
 /* From now on signals are only noted. Does not return while the clean-up runs. */
 void interrupt_hold(Interrupt *in);

@@ -2,7 +2,6 @@
 #include <errno.h>
 #include <locale.h>
 #include <signal.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +10,7 @@
 
 #include "cli/cli.h"
 #include "cli/docs.h"
+#include "cli/interrupt.h"
 #include "cli/output.h"
 #include "param/suggest.h"
 #include "venation.h"
@@ -105,9 +105,7 @@ static void say(const char *why, const char *detail)
 /* Discards what is being written and ends the process. Any thread. */
 static G_GNUC_NORETURN void end(const char *why, const char *detail)
 {
-    static atomic_flag ending = ATOMIC_FLAG_INIT;
-    while (atomic_flag_test_and_set(&ending)) /* another thread's failure goes first */
-        pause();
+    interrupt_freeze();
     output_discard_all();
     say(why, detail);
     _exit(EXIT_FAILED);

@@ -272,10 +272,11 @@ static gboolean is_frame(const char *rest)
 }
 
 /* Files in a folder of the output that begin with NAME_ or NAME. and are not among `written`: counted; frames among them go, if `moves` is given. */
-static guint old_files(const Output *o, const char *folder, const char *name, GHashTable *written, GArray *moves)
+static gboolean old_files(const Output *o, const char *folder, const char *name, GHashTable *written, GArray *moves, guint *count,
+                          GError **error)
 {
     char *path = g_build_filename(o->dir, folder, NULL);
-    GPtrArray *names = read_folder(path, NULL);
+    GPtrArray *names = read_folder(path, error);
     guint n = 0;
     for (guint i = 0; names && i < names->len; i++) {
         const char *entry = names->pdata[i], *rest = entry + strlen(name);
@@ -289,14 +290,19 @@ static guint old_files(const Output *o, const char *folder, const char *name, GH
         }
         g_free(relative);
     }
+    gboolean good = names != NULL;
     if (names)
         g_ptr_array_unref(names);
     g_free(path);
-    return n;
+    *count = n;
+    return good;
 }
 
-static GArray *plan_moves(Output *o, const char *name, const GPtrArray *files, const GPtrArray *folders)
+/* NULL with an error. */
+static GArray *plan_moves(Output *o, const char *name, const GPtrArray *files, const GPtrArray *folders, GError **error)
 {
+    guint frames;
+    gboolean good = TRUE;
     GArray *moves = g_array_new(FALSE, FALSE, sizeof(Move));
     g_array_set_clear_func(moves, clear_move);
     GHashTable *written = g_hash_table_new(g_str_hash, g_str_equal);
@@ -304,11 +310,14 @@ static GArray *plan_moves(Output *o, const char *name, const GPtrArray *files, c
         g_hash_table_add(written, files->pdata[i]);
         add_move(o, moves, files->pdata[i], files->pdata[i]);
     }
-    for (guint i = 0; i < folders->len; i++)
-        old_files(o, folders->pdata[i], name, written, moves);
-    o->stale = old_files(o, "", name, written, NULL);
+    for (guint i = 0; good && i < folders->len; i++)
+        good = old_files(o, folders->pdata[i], name, written, moves, &frames, error);
+    good = good && old_files(o, "", name, written, NULL, &o->stale, error);
     g_hash_table_destroy(written);
-    return moves;
+    if (good)
+        return moves;
+    g_array_unref(moves);
+    return NULL;
 }
 
 static gboolean make_way(Move *m)
@@ -360,7 +369,9 @@ static gboolean move_all(Output *o, const char *name, const GPtrArray *files, co
         if (!good)
             return FALSE;
     }
-    GArray *moves = plan_moves(o, name, files, folders);
+    GArray *moves = plan_moves(o, name, files, folders, error);
+    if (!moves)
+        return FALSE;
     Move *move = (Move *)(void *)moves->data, *failed = carry_out(move, moves->len);
     o->committed = !failed;
     if (failed) {

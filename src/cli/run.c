@@ -3,6 +3,7 @@
 #include <gio/gio.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "lib/fault.h"
 
@@ -158,10 +159,10 @@ static void abandon(gpointer user)
     Run *run = user;
     if (run->output)
         output_discard(run->output);
-    if (run->progress)
-        fputc('\n', stderr);
-    if (!run->args->quiet)
-        fputs("venation: stopped; nothing was written\n", stderr);
+    static const char text[] = "\nvenation: stopped; nothing was written\n"; /* below the progress bar */
+    const char *from = run->progress ? text : text + 1;
+    if (!run->args->quiet && write(STDERR_FILENO, from, strlen(from)) < 0)
+        return; /* there is nobody to tell */
 }
 
 /* ---- the run ---- */

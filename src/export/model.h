@@ -44,6 +44,7 @@ typedef struct {
     const uint8_t *on_margin;  /* [blade->n_vertices] */
     /* file names of maps beside the model, for formats that refer to them; NULL: not there */
     const char *base_color_file, *abaxial_base_color_file, *opacity_file, *normal_file, *roughness_file, *height_file, *translucency_file;
+    gboolean holes; /* the blade has holes, which are in the opacity map and not in the mesh */
     ModelImages images;
     const Rig *rig;            /* NULL: not rigged */
     const ModelMorph *morph;   /* keyframes */

@@ -161,7 +161,13 @@ static void put_look(GString *s, const Model *m, const Side *side, const char *b
 
 static void put_side(GString *s, const Model *m, const Side *side)
 {
+    bool cut = m->holes && m->opacity_file != NULL;
     g_string_append_printf(s, "#ifndef (%s)\n#declare %s = texture {\n    ", side->name, side->name);
+    if (cut) {
+        g_string_append(s, "uv_mapping image_pattern { png ");
+        put_string(s, m->opacity_file);
+        g_string_append(s, " gamma 1.0 interpolate 2 }\n    texture_map {\n        [0.5 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }]\n        [0.5 ");
+    }
     if (m->translucency_file != NULL) {
         g_string_append(s, "uv_mapping image_pattern { png ");
         put_string(s, m->translucency_file);
@@ -173,6 +179,8 @@ static void put_side(GString *s, const Model *m, const Side *side)
     } else {
         put_look(s, m, side, "0.45");
     }
+    if (cut)
+        g_string_append(s, "]\n    }");
     g_string_append(s, "\n}\n#end\n\n");
 }
 

@@ -240,7 +240,15 @@ static void put_blade(const Polygon *margin, const PaintStyle *style, Sink *out)
         put_point(out->text, margin->v[i]);
         sink_drain(out);
     }
-    g_string_append(out->text, "Z\"/>\n</g>\n<clipPath id=\"inside\"><use href=\"#blade\"/></clipPath>\n");
+    g_string_append_c(out->text, 'Z');
+    for (uint32_t k = 0; style->holes != NULL && k < style->holes->n; k++) { /* clockwise, so that they are holes by either rule of filling */
+        for (uint32_t i = style->holes->start[k]; i < style->holes->start[k + 1]; i++) {
+            g_string_append_c(out->text, i == style->holes->start[k] ? 'M' : ' ');
+            put_point(out->text, style->holes->p[i]);
+        }
+        g_string_append_c(out->text, 'Z');
+    }
+    g_string_append(out->text, "\"/>\n</g>\n<clipPath id=\"inside\"><use href=\"#blade\"/></clipPath>\n");
 }
 
 static void put_head(const Network *net, const Frame *frame, const char *title, GString *s)

@@ -228,10 +228,16 @@ static inline void guard_make(Guard *g, Box2 box, const Vec2 *pos, const uint32_
     for (uint32_t i = 0; i < n; i++)
         g->hull = box_add(g->hull, pos[near[i]]);
     for (uint32_t k = 0; k < 4; k++) {
-        u[k] = pos[near[MIN(k, n - 1)]];
-        for (uint32_t i = 0; i < n && !g->all; i++)
-            if (vec_dist2(pos[near[i]], vec2(cx[k], cy[k])) < vec_dist2(u[k], vec2(cx[k], cy[k])))
-                u[k] = pos[near[i]];
+        uint32_t best = near[MIN(k, n - 1)];
+        double best2 = vec_dist2(pos[best], vec2(cx[k], cy[k]));
+        for (uint32_t i = 0; i < n && !g->all; i++) {
+            double d2 = vec_dist2(pos[near[i]], vec2(cx[k], cy[k]));
+            if (d2 < best2 || (d2 == best2 && near[i] < best)) {
+                best = near[i];
+                best2 = d2;
+            }
+        }
+        u[k] = pos[best];
     }
     g->x = (Four){u[0].x, u[1].x, u[2].x, u[3].x};
     g->y = (Four){u[0].y, u[1].y, u[2].y, u[3].y};
@@ -260,6 +266,21 @@ static inline bool excludes_point(const Guard *g, Vec2 p)
     return FOUR_ANY(nearer);
 }
 
+/* Rivals that are nearest to a corner exclude others from all over the box. */
+static inline uint32_t thin_out(Box2 box, const Vec2 *pos, uint32_t *out, uint32_t n)
+{
+    enum { SOME = 4 };
+    if (n <= SOME)
+        return n;
+    Guard g;
+    guard_make(&g, box, pos, out, n, false);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < n; i++)
+        if (!excludes_point(&g, pos[out[i]]))
+            out[kept++] = out[i];
+    return kept;
+}
+
 FOUR_WIDE uint32_t boxtree_rivals(const Boxtree *t, const Vec2 *pos, Box2 box, const uint32_t *near, uint32_t n_near,
                                   bool nearest_alone, uint32_t *out, uint32_t cap)
 {
@@ -286,7 +307,7 @@ FOUR_WIDE uint32_t boxtree_rivals(const Boxtree *t, const Vec2 *pos, Box2 box, c
             out[n_out++] = t->item[i];
         }
     }
-    return n_out;
+    return nearest_alone ? n_out : thin_out(box, pos, out, n_out);
 }
 
 FOUR_WIDE uint32_t points_rivals(const Vec2 *pos, const uint32_t *item, uint32_t n, Box2 box, const uint32_t *near, uint32_t n_near,
@@ -300,5 +321,5 @@ FOUR_WIDE uint32_t points_rivals(const Vec2 *pos, const uint32_t *item, uint32_t
     for (uint32_t i = 0; i < n; i++)
         if (!shuts_out(&g, point_box(pos[item[i]])) && !excludes_point(&g, pos[item[i]]))
             out[n_out++] = item[i];
-    return n_out;
+    return nearest_alone ? n_out : thin_out(box, pos, out, n_out);
 }

@@ -12,6 +12,7 @@ typedef enum {
     RANDOM_TEXTURE = 3,   /* colour variation of the blade */
     RANDOM_POSE = 64,     /* unevenness of poses */
     RANDOM_LSYSTEM = 80,  /* choice among productions */
+    RANDOM_GRAIN = 90,    /* which part of a scanned leaf lends its grain to a hole */
     RANDOM_MESH = 100,    /* order in which a mesh's points are inserted */
     RANDOM_SWEEP = 120,   /* values that a sweep draws; 121: digits of its sequences */
 } RandomStream;

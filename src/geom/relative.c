@@ -280,10 +280,33 @@ static void candidate_add(Candidates *c, Neighbour x, bool barred)
         c->cap *= 2;
         c->at = c->at == c->local ? memcpy(g_new(Candidate, c->cap), c->local, sizeof c->local) : g_renew(Candidate, c->at, c->cap);
     }
-    uint32_t i = c->n++;
-    for (; i && precedes(&x, &c->at[i - 1].x); i--)
-        c->at[i] = c->at[i - 1];
-    c->at[i] = (Candidate){x, barred};
+    c->at[c->n++] = (Candidate){x, barred};
+    if (precedes(&x, &c->at[0].x)) { /* the nearest first; the rest is sorted later */
+        c->at[c->n - 1] = c->at[0];
+        c->at[0] = (Candidate){x, barred};
+    }
+}
+
+static int by_nearness(gconstpointer a, gconstpointer b, gpointer unused)
+{
+    const Neighbour *x = &((const Candidate *)a)->x, *y = &((const Candidate *)b)->x;
+    return precedes(x, y) ? -1 : precedes(y, x);
+}
+
+static void candidates_sort(Candidates *c)
+{
+    enum { FEW = 12 };
+    if (c->n > FEW) {
+        g_qsort_with_data(c->at, (gint)c->n, sizeof *c->at, by_nearness, NULL);
+        return;
+    }
+    for (uint32_t k = 1; k < c->n; k++) {
+        Candidate x = c->at[k];
+        uint32_t i = k;
+        for (; i && precedes(&x.x, &c->at[i - 1].x); i--)
+            c->at[i] = c->at[i - 1];
+        c->at[i] = x;
+    }
 }
 
 /* Does one of the first k candidates exclude candidate k? */
@@ -291,6 +314,15 @@ static bool outdone(const Candidates *c, uint32_t k)
 {
     for (uint32_t i = 0; i < k; i++)
         if (excludes(&c->at[i].x, &c->at[k].x))
+            return true;
+    return false;
+}
+
+/* Does one of a few candidates so far, the nearest among them, exclude x? Mostly one of these does if any, and the list stays short. */
+static bool outdone_by_few(const Candidates *c, const Neighbour *x)
+{
+    for (uint32_t i = 0; i < MIN(c->n, 4); i++)
+        if (excludes(&c->at[i].x, x))
             return true;
     return false;
 }
@@ -309,7 +341,9 @@ static void consider(const View *h, const Field *f, uint32_t v, Candidates *c)
             hits |= 1u << i;
     }
     out = out || excluded_by_any(h->w, h->n_witnesses, &x);
-    if ((out && !hits) || (f->sees && !f->sees(f->user, v)))
+    if (!hits && (out || outdone_by_few(c, &x))) /* one that lies in no lune excludes none that the others don't */
+        return;
+    if (f->sees && !f->sees(f->user, v))
         return;
     c->gone |= hits;
     candidate_add(c, x, out);
@@ -374,6 +408,7 @@ bool hood_update(Hood *h, const Field *f, Vec2 s, const Boxtree *fresh)
     look_at_fresh(&old, f, fresh, &c);
     if (c.n == 0)
         return false;
+    candidates_sort(&c);
     View v = old;
     v.n = 0;
     for (uint32_t i = 0; i < old.n; i++)

@@ -185,16 +185,19 @@ static void add_edge(double *sum, uint32_t width, uint32_t y, Vec2 a, Vec2 b)
         add_segment(sum, width, p, q);
 }
 
+/* Holes turn the other way round than the margin, so they take away what it gave. */
 static void blade_row(uint32_t y, void *user)
 {
     const Painter *p = user;
     double *sum = g_new0(double, (gsize)p->width + 2), area = 0.0;
     for (uint32_t i = 0; i < p->n_margin; i++)
         add_edge(sum, p->width, y, p->margin[i], p->margin[i + 1 < p->n_margin ? i + 1 : 0]);
+    for (uint32_t i = p->n_margin; i < p->n_edges; i++)
+        add_edge(sum, p->width, y, p->edge[i].a, p->edge[i].b);
     float *out = field_row(p, &p->blade, y);
     for (uint32_t x = 0; x < p->width; x++) {
         area += sum[x];
-        double part = fabs(area);
+        double part = MAX(area, 0.0); /* a hole may lie across the margin */
         /* what rounding leaves of sums that cancel */
         out[x] = part < 1e-7 ? 0.0f : part > 1.0 - 1e-7 ? 1.0f : (float)part;
     }

@@ -40,8 +40,8 @@ const float *painter_inset(Painter *p)
     field_begin(p, &p->side);
     if (from < p->bottom) {
         if (p->to_edge == NULL) {
-            bins_init(&p->edge_bins, p->width, p->rows, p->n_margin, edge_area, p->edge);
-            p->to_edge = nearest_new(&p->edge_bins, p->n_margin, edge_shape, p->edge, MAX(MAX(p->rim, LINE_REACH), p->padding));
+            bins_init(&p->edge_bins, p->width, p->rows, p->n_edges, edge_area, p->edge);
+            p->to_edge = nearest_new(&p->edge_bins, p->n_edges, edge_shape, p->edge, MAX(MAX(p->rim, LINE_REACH), p->padding));
         }
         nearest_fill(p->to_edge, p->pool, from, p->bottom, NULL, field_row(p, &p->inset, from), label_row(p, &p->side, from));
     }

@@ -117,16 +117,30 @@ static void survey(Painter *p)
     p->steps = net->n_steps;
 }
 
+/* Sides of holes come after those of the margin. */
+static void take_holes(Painter *p)
+{
+    const Holes *h = p->style.holes;
+    for (uint32_t k = 0; h != NULL && k < h->n; k++)
+        for (uint32_t i = h->start[k]; i < h->start[k + 1]; i++) {
+            uint32_t next = i + 1 < h->start[k + 1] ? i + 1 : h->start[k];
+            p->edge[p->n_edges++] = capsule_new(painter_to_image(p, h->p[i]), 0.0, painter_to_image(p, h->p[next]), 0.0);
+        }
+}
+
 static void take_margin(Painter *p)
 {
     const Polygon *m = p->net->margin;
-    p->n_margin = m != NULL ? m->n : 0;
+    const Holes *h = m != NULL ? p->style.holes : NULL;
+    p->n_margin = p->n_edges = m != NULL ? m->n : 0;
     p->margin = g_new(Vec2, p->n_margin + 1);
-    p->edge = g_new(Capsule, p->n_margin + 1);
+    p->edge = g_new(Capsule, p->n_margin + (h != NULL ? h->start[h->n] : 0) + 1);
     for (uint32_t i = 0; i < p->n_margin; i++)
         p->margin[i] = painter_to_image(p, m->v[i]);
     for (uint32_t i = 0; i < p->n_margin; i++)
         p->edge[i] = capsule_new(p->margin[i], 0.0, p->margin[i + 1 < p->n_margin ? i + 1 : 0], 0.0);
+    if (m != NULL)
+        take_holes(p);
 }
 
 Painter *painter_new(const Network *net, const Frame *frame, const PaintStyle *style)

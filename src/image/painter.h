@@ -45,9 +45,9 @@ struct Painter {
     uint32_t top, bottom; /* rows at hand: those and what of their surroundings they depend on; whole rows of tiles */
 
     Circle *circle;
-    uint32_t n_margin;
+    uint32_t n_margin, n_edges;
     Vec2 *margin;     /* image coordinates */
-    Capsule *edge;    /* its sides */
+    Capsule *edge;    /* [n_edges] its sides, then those of holes */
     Strokes *strokes; /* as exact as the image can show */
     Bins bins;
     Strokes *ridges; /* coarser, for relief */

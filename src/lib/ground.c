@@ -1,9 +1,11 @@
 #include "lib/ground.h"
 
 #include "import/drawing_file.h"
+#include "lib/ground_back.h"
 #include "lib/settings.h"
 #include "scan/fill.h"
 #include "scan/found.h"
+#include "scan/openings.h"
 
 /* ---- coordinates ---- */
 
@@ -41,6 +43,16 @@ static gboolean read_scan(const Params *p, ParamId id, Scan **scan, GError **err
         return TRUE;
     *scan = scan_read(file, 0, error);
     return *scan != NULL;
+}
+
+/* The back is laid on by an affine map, which makes up for that. */
+static void check_pixels(Ground *g, const Params *p)
+{
+    double aspect = g->scan->aspect;
+    if (aspect > 0.0 && aspect != 1.0)
+        g_string_append_printf(g->note, "%s: by its resolution its pixels are not square (width to height %.3f); they are taken as square, so the leaf is %.1f %% too %s. "
+                               "Areas in mm² are right, lengths lie between; scale the image to square pixels to mend that\n",
+                               params_text(p, PARAM_SCAN_FILE), aspect, 100.0 * (MAX(aspect, 1.0 / aspect) - 1.0), aspect > 1.0 ? "narrow" : "wide");
 }
 
 /* Names the image in what went wrong with it. */
@@ -125,6 +137,7 @@ static gboolean find_profile(Ground *g, const Params *p, GroundScan *sheet, GErr
 {
     if (!take_profile(g, p, sheet) && !capture_profile(g, p, error))
         return FALSE;
+    g->has_threshold = true;
     g->base = g->profile->base;
     g->tip = g->profile->tip;
     g->outline = leaf_outline(g, g->profile->outline);
@@ -133,7 +146,9 @@ static gboolean find_profile(Ground *g, const Params *p, GroundScan *sheet, GErr
 
 static gboolean find_fang(Ground *g, const Params *p, GError **error)
 {
-    FangDef def = settings_fang(p, g->scan->height);
+    FangDef def;
+    if (!settings_fang(p, g->scan->height, &def, error))
+        return FALSE;
     g->fang = fang_capture(g->scan, &def, error);
     if (!g->fang)
         return blame(p, PARAM_SCAN_FILE, error);
@@ -145,61 +160,25 @@ static gboolean find_fang(Ground *g, const Params *p, GError **error)
 
 /* ---- the other side ---- */
 
-/* The affine map that takes points `from` to points `to` best, by least squares. */
-static Affine fit_affine(const Vec2 *from, const Vec2 *to, uint32_t n)
+static gboolean lay_back(Ground *g, const Params *p, const GPtrArray *all, GError **error)
 {
-    Vec2 f0 = vec2(0, 0), t0 = vec2(0, 0);
-    for (uint32_t i = 0; i < n; i++) {
-        f0 = vec_add(f0, vec_scale(from[i], 1.0 / n));
-        t0 = vec_add(t0, vec_scale(to[i], 1.0 / n));
+    const char *front = params_text(p, PARAM_SCAN_FILE), *back = params_text(p, PARAM_SCAN_BACK);
+    BackLaid laid = ground_lay_back(g->outline, all);
+    g->back_off = laid.off;
+    if (!(laid.off <= BACK_WRONG)) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE,
+                    "%s is no back of %s: laid onto each other as well as they go, their outlines lie %.1f %% of the leaf's length apart on average; "
+                    "%g %% are allowed", back, front, 100.0 * laid.off, 100.0 * BACK_WRONG);
+        return FALSE;
     }
-    double xx = 0, xy = 0, yy = 0, xu = 0, xv = 0, yu = 0, yv = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        Vec2 f = vec_sub(from[i], f0), t = vec_sub(to[i], t0);
-        xx += f.x * f.x, xy += f.x * f.y, yy += f.y * f.y;
-        xu += f.x * t.x, yu += f.y * t.x, xv += f.x * t.y, yv += f.y * t.y;
-    }
-    double det = xx * yy - xy * xy;
-    Affine m = {.a = (yy * xu - xy * yu) / det, .c = (xx * yu - xy * xu) / det, .b = (yy * xv - xy * yv) / det, .d = (xx * yv - xy * xv) / det};
-    m.e = t0.x - m.a * f0.x - m.c * f0.y;
-    m.f = t0.y - m.b * f0.x - m.d * f0.y;
-    return m;
-}
-
-/* n points evenly along the margin. */
-static void sample_margin(const Polygon *p, Vec2 *out, uint32_t n)
-{
-    double whole = 0.0, gone = 0.0;
-    for (uint32_t k = 0; k < p->n; k++)
-        whole += vec_dist(p->v[k], p->v[(k + 1) % p->n]);
-    for (uint32_t i = 0, k = 0; i < n; i++) {
-        double want = whole * i / n, length;
-        while (gone + (length = vec_dist(p->v[k], p->v[(k + 1) % p->n])) < want && k + 1 < p->n) {
-            gone += length;
-            k++;
-        }
-        out[i] = vec_lerp(p->v[k], p->v[(k + 1) % p->n], length > 0.0 ? CLAMP((want - gone) / length, 0.0, 1.0) : 0.0);
-    }
-}
-
-Affine ground_align_back(const Polygon *outline, const Profile *back, uint32_t height)
-{
-    enum { ROUNDS = 40, SAMPLES = 720 };
-    Ground other = {.base = back->base, .tip = back->tip};
-    Polygon *seen = leaf_outline(&other, back->outline);
-    Affine m = {.a = -1.0, .d = 1.0}; /* leaf coordinates to the back's: mirrored */
-    Vec2 *from = g_new(Vec2, SAMPLES), *to = g_new(Vec2, SAMPLES);
-    sample_margin(outline, from, SAMPLES);
-    for (int round = 0; round < ROUNDS; round++) {
-        for (uint32_t i = 0; i < SAMPLES; i++)
-            to[i] = polygon_nearest(seen, affine_apply(&m, from[i]), NULL);
-        m = fit_affine(from, to, SAMPLES);
-    }
-    g_free(from);
-    g_free(to);
-    polygon_free(seen);
-    Affine pixels = to_pixels(back->base, back->tip, height);
-    return affine_multiply(&pixels, &m);
+    Affine pixels = to_pixels(laid.base, laid.tip, g->back->height);
+    g->to_back = affine_multiply(&pixels, &laid.map);
+    if (laid.off > BACK_ODD && laid.same_side)
+        g_string_append_printf(g->note, "%s: its leaf lies the same way round as that of %s; does it show the same side?\n", back, front);
+    else if (laid.off > BACK_ODD)
+        g_string_append_printf(g->note, "%s: its outline lies %.1f %% of the leaf's length off that of %s on average; is it the same leaf, turned over?\n", back,
+                               100.0 * laid.off, front);
+    return TRUE;
 }
 
 static gboolean read_back(Ground *g, const Params *p, GError **error)
@@ -208,12 +187,13 @@ static gboolean read_back(Ground *g, const Params *p, GError **error)
         return g->back || !*params_text(p, PARAM_SCAN_BACK);
     ProfileDef def = settings_profile(p, g->back->height);
     def.has_base = def.has_tip = false;
+    def.each = true;
     GPtrArray *all = profile_capture(g->back, &def, NULL, error);
     if (!all)
         return blame(p, PARAM_SCAN_BACK, error);
-    g->to_back = ground_align_back(g->outline, all->pdata[0], g->back->height);
+    gboolean ok = lay_back(g, p, all, error);
     g_ptr_array_unref(all);
-    return TRUE;
+    return ok;
 }
 
 /* ---- drawings ---- */
@@ -338,19 +318,44 @@ static gboolean find_outline(Ground *g, const Params *p, GroundScan *sheet, GErr
     return g->outline != NULL;
 }
 
+/* Whatever the outline comes from: what lay behind the leaf shows in its openings. */
+static void find_holes(Ground *g, const Params *p)
+{
+    Polygon *outline = outline_in(g, g->scan, &g->to_scan);
+    ThresholdDef def = settings_profile(p, g->scan->height).threshold;
+    g->has_threshold = g->has_threshold || openings_threshold(g->scan, outline, &def, &g->threshold);
+    if (g->has_threshold && params_choice(p, PARAM_SCAN_HOLES) == 1) {
+        Vec2 x = to_leaf(g, vec_add(g->base, vec2(1.0, 0.0))), y = to_leaf(g, vec_add(g->base, vec2(0.0, 1.0))), at = to_leaf(g, vec2(0.0, 0.0));
+        Affine map = {x.x, x.y, y.x, y.y, at.x, at.y};
+        double tolerance = MIN(params_number(p, PARAM_SCAN_TOLERANCE), 0.5); /* small as they are, they show corners sooner */
+        Holes *pixels = openings_trace(g->scan, outline, &g->threshold, openings_least(outline->area), tolerance);
+        g->holes = holes_mapped(pixels, &map);
+        holes_free(pixels);
+    }
+    polygon_free(outline);
+}
+
+/* Carries the leaf's colours on; `known`: the threshold that parts it from what is behind it, else one is looked for. */
+static void make_texture(const Ground *g, const Params *p, Scan *scan, const Affine *to_scan, const Threshold *known)
+{
+    enum { AROUND = 64 };
+    Threshold own;
+    Polygon *outline = outline_in(g, scan, to_scan);
+    ThresholdDef def = settings_profile(p, scan->height).threshold;
+    if (!known && openings_threshold(scan, outline, &def, &own))
+        known = &own;
+    scan_fill(scan, outline, known, scan_fill_inset(outline->area), AROUND);
+    polygon_free(outline);
+}
+
 /* The scans are looked at no more: from here on they are textures. */
 static void make_textures(Ground *g, const Params *p)
 {
-    const double inset = 3.0; /* pixels: what scanners blur */
-    enum { AROUND = 64 };
     if (!g->scan || !params_switch(p, PARAM_SCAN_TEXTURE))
         return;
-    Polygon *front = outline_in(g, g->scan, &g->to_scan), *back = g->back ? outline_in(g, g->back, &g->to_back) : NULL;
-    scan_fill(g->scan, front, g->profile ? &g->threshold : NULL, inset, AROUND);
-    if (back)
-        scan_fill(g->back, back, NULL, inset, AROUND);
-    polygon_free(front);
-    polygon_free(back);
+    make_texture(g, p, g->scan, &g->to_scan, g->has_threshold ? &g->threshold : NULL);
+    if (g->back)
+        make_texture(g, p, g->back, &g->to_back, NULL);
 }
 
 static gboolean get_scan(Ground *g, const Params *p, const GroundScan *sheet, GError **error)
@@ -367,12 +372,16 @@ static gboolean find(Ground *g, const Params *p, GroundScan *sheet, bool veins, 
 {
     if (!get_scan(g, p, sheet, error) || !find_outline(g, p, sheet, error))
         return FALSE;
-    if (g->scan)
+    if (g->scan) {
         g->to_scan = to_pixels(g->base, g->tip, g->scan->height);
+        check_pixels(g, p);
+    }
     if (g->profile || g->fang)
         g->cut_off = along_edge(g->profile ? g->profile->outline : g->fang->outline, g->scan);
     if (!read_back(g, p, error))
         return FALSE;
+    if (g->scan)
+        find_holes(g, p);
     if (!veins)
         return TRUE;
     if (*params_text(p, PARAM_VEINS_DRAWING))
@@ -391,6 +400,7 @@ static void clear(gpointer data)
     scan_free(g->back);
     profile_free(g->profile);
     fang_profile_free(g->fang);
+    holes_free(g->holes);
 }
 
 Ground *ground_new(const Params *p, bool veins, GError **error) { return ground_new_on(NULL, p, veins, error); }

@@ -3,6 +3,7 @@
 #define LIB_GROUND_H
 
 #include "geom/affine.h"
+#include "geom/holes.h"
 #include "param/params.h"
 #include "scan/fang.h"
 #include "scan/profile.h"
@@ -17,7 +18,10 @@ typedef struct {
     Scan *scan, *back;       /* with scan.texture the leaf's colours go on beyond its border and over its holes (scan/fill.h) */
     Affine to_scan, to_back; /* leaf coordinates to columns and rows, the image's upper left corner at 0,0 */
     Profile *profile;        /* by threshold; NULL when [outline] gave the margin */
-    Threshold threshold;
+    Threshold threshold;     /* that parts it from the background */
+    bool has_threshold;      /* there is such a one */
+    Holes *holes;            /* leaf coordinates: openings of the blade that stay open; NULL: none are kept */
+    double back_off;         /* mean distance of the outlines of both sides, leaf lengths; 0 without a back */
     FangProfile *fang;       /* by edges */
     char *drawing_lies;      /* how the drawn veins came to lie on it, in words (geom/svgplace.h); or NULL */
     GString *note;           /* what a person should know of it, a line each */
@@ -38,9 +42,5 @@ void ground_scan_free(GroundScan *sheet);
 Ground *ground_new_on(GroundScan *sheet, const Params *p, bool veins, GError **error);
 Ground *ground_ref(Ground *g);
 void ground_unref(Ground *g);
-
-/* Lays the back of a leaf onto its front: the map from leaf coordinates to the back's columns and rows, from its own outline, base and tip,
- * by iterated closest points (Besl & McKay 1992) between the mirrored outlines. */
-Affine ground_align_back(const Polygon *outline, const Profile *back, uint32_t height);
 
 #endif

@@ -1,5 +1,6 @@
 /* The run record: all that a run depends on and what came of it, and no time or place, so that equal runs give equal bytes. */
 #include "export/export.h"
+#include "geom/ring.h"
 #include "lib/leaf.h"
 #include "lib/shape.h"
 
@@ -107,6 +108,27 @@ static void parameters(GString *s, const Params *p)
     g_string_append(s, "\n    }\n  },\n");
 }
 
+/* The blade in pixels and, where the scan says their size, in millimetres. Its outline is what was traced, before it was simplified, if that is known. */
+static void scan_sizes(GString *s, const Ground *g)
+{
+    double length = vec_dist(affine_apply(&g->to_scan, vec2(0.0, 0.0)), affine_apply(&g->to_scan, vec2(0.0, 1.0))), mm = g->scan->mm_per_pixel;
+    double around = g->profile ? g->profile->perimeter : length * ring_length(g->outline), width = length * (g->outline->box.x1 - g->outline->box.x0);
+    double area = g->profile ? g->profile->area : g->fang ? g->fang->contour->area : length * length * g->outline->area;
+    double holes = g->holes ? length * length * g->holes->area : 0.0;
+    number(s, "length", length, ",\n");
+    number(s, "width_across", width, ",\n");
+    number(s, "perimeter", around, ",\n");
+    number(s, "area", area, ",\n");
+    g_string_append_printf(s, "    \"holes\": %u,\n", g->holes ? g->holes->n : 0);
+    number(s, "holes_area", holes, ",\n");
+    if (!(mm > 0.0))
+        return;
+    number(s, "length_mm", mm * length, ",\n");
+    number(s, "width_mm", mm * width, ",\n");
+    number(s, "perimeter_mm", mm * around, ",\n");
+    number(s, "area_mm2", mm * mm * (area - holes), ",\n");
+}
+
 /* What a scan gave, in pixels of it. */
 static void scan_facts(GString *s, const Ground *g)
 {
@@ -114,22 +136,34 @@ static void scan_facts(GString *s, const Ground *g)
     Vec2 from = affine_apply(&g->to_scan, vec2(0.0, 0.0)), to = affine_apply(&g->to_scan, vec2(0.0, 1.0));
     g_string_append_printf(s, "  \"scan\": {\n    \"width\": %u,\n    \"height\": %u,\n", g->scan->width, g->scan->height);
     number(s, "mm_per_pixel", g->scan->mm_per_pixel, ",\n");
+    if (g->scan->aspect > 0.0)
+        number(s, "pixel_aspect", g->scan->aspect, ",\n");
     number(s, "cut_off", g->cut_off, ",\n");
-    if (g->profile) {
+    if (g->back)
+        number(s, "back_off", g->back_off, ",\n");
+    if (g->has_threshold) { /* as scan.channel, scan.threshold and scan.side take it */
         key(s, "    ", "channel");
         export_json_string(s, channel_name(g->threshold.channel));
         g_string_append(s, ",\n");
-        number(s, "threshold", g->threshold.level, ",\n");
+        number(s, "threshold", g->scan->depth == 8 ? g->threshold.level : g->threshold.level / 257.0, ",\n");
+        key(s, "    ", "side");
+        g_string_append(s, g->threshold.dark ? "\"dark\",\n" : "\"light\",\n");
         number(s, "separability", g->threshold.separability, ",\n");
-        number(s, "area", g->profile->area, ",\n");
-        number(s, "perimeter", g->profile->perimeter, ",\n");
+    }
+    scan_sizes(s, g);
+    if (g->profile) {
         number(s, "symmetry", g->profile->symmetry, ",\n");
         g_string_append_printf(s, "    \"nodes_traced\": %u,\n    \"base_from\": \"%s\",\n", g->profile->nodes, base[g->profile->base_from]);
     }
     if (g->fang) {
         g_string_append_printf(s, "    \"characteristic_points\": %u,\n    \"curves\": %u,\n    \"nodes_traced\": %u,\n",
                                g->fang->corners->len, g->fang->fit->n, g->fang->contour->n);
-        number(s, "area", g->fang->contour->area, ",\n");
+        number(s, "area_off_level", g->fang->region.area / g->fang->region.rough - 1.0, ",\n");
+        number(s, "edge_continuity", g->fang->region.continuity, ",\n");
+        number(s, "edge_gap", g->fang->region.gap, ",\n");
+        number(s, "edge_sigma", g->fang->used.sigma, ",\n");
+        number(s, "edge_high", g->fang->used.high, ",\n");
+        number(s, "edge_low", g->fang->used.low, ",\n");
         number(s, "deviation_largest", g->fang->fit->largest, ",\n");
         number(s, "deviation_mean", g->fang->fit->mean, ",\n");
     }

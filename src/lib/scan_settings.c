@@ -30,10 +30,40 @@ ProfileDef settings_profile(const Params *p, uint32_t height)
     return d;
 }
 
-FangDef settings_fang(const Params *p, uint32_t height)
+/* What method fang has no use for: said, so that nobody waits for its effect. Defaults written out change nothing. */
+static bool check_unused(const Params *p, GError **error)
 {
+    static const struct {
+        ParamId id;
+        const char *instead;
+    } unused[] = {{PARAM_SCAN_SQUARE, "its contour follows edges; scan.sigma makes them smoother"},
+                  {PARAM_SCAN_SUBPIXEL, "its contour is always drawn in between pixels"},
+                  {PARAM_SCAN_TOLERANCE, "its outline is of curves, and scan.corners says how many"}};
+    for (gsize i = 0; i < G_N_ELEMENTS(unused); i++) {
+        char *value = params_format(p, unused[i].id);
+        bool own = !g_str_equal(value, param_info(unused[i].id)->initial);
+        if (own)
+            g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
+                        "scan.%s is %s, but scan.method is fang, which does not use it: %s; leave it out, or set scan.method to contour",
+                        param_info(unused[i].id)->key, value, unused[i].instead);
+        g_free(value);
+        if (own)
+            return false;
+    }
+    return true;
+}
+
+bool settings_fang(const Params *p, uint32_t height, FangDef *out, GError **error)
+{
+    if (!check_unused(p, error))
+        return false;
     FangDef d = fang_def_default();
-    d.channel = (Channel)params_choice(p, PARAM_SCAN_CHANNEL);
+    d.threshold = (ThresholdDef){(Channel)params_choice(p, PARAM_SCAN_CHANNEL), (LeafSide)params_choice(p, PARAM_SCAN_SIDE),
+                                 params_number(p, PARAM_SCAN_THRESHOLD)};
+    d.close = params_number(p, PARAM_SCAN_CLOSE);
+    d.open = params_number(p, PARAM_SCAN_OPEN);
+    d.least_area = params_number(p, PARAM_SCAN_LEAST_AREA);
+    d.leaf = (uint32_t)params_integer(p, PARAM_SCAN_LEAF);
     d.edges.op = (EdgesOperator)params_choice(p, PARAM_SCAN_OPERATOR);
     d.edges.sigma = params_number(p, PARAM_SCAN_SIGMA);
     d.corners.threshold = params_number(p, PARAM_SCAN_CORNERS);
@@ -44,7 +74,8 @@ FangDef settings_fang(const Params *p, uint32_t height)
     d.keep_stalk = params_choice(p, PARAM_SCAN_PETIOLE) == 1;
     d.has_base = image_point(p, PARAM_SCAN_BASE, height, &d.base);
     d.has_tip = image_point(p, PARAM_SCAN_TIP, height, &d.tip);
-    return d;
+    *out = d;
+    return true;
 }
 
 FoundDef settings_found(const Params *p)

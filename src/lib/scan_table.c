@@ -1,4 +1,5 @@
 /* Nodes of a captured outline by square size and tolerance (Hong 2005, tables 5.1 and 5.2). */
+#include "lib/fang_table.h"
 #include "lib/leaf.h"
 #include "lib/settings.h"
 
@@ -30,21 +31,28 @@ static gboolean add_row(GString *s, const Scan *scan, const ProfileDef *def, uin
     return TRUE;
 }
 
-char *ven_scan_table(const VenParams *params, GError **error)
+static char *node_table(const Params *p, const Scan *scan, GError **error)
 {
     static const uint32_t square[] = {1, 2, 4, 8, 16};
-    const char *file = params_text(params->values, PARAM_SCAN_FILE);
-    Scan *scan = scan_read(file, 0, error);
-    if (!scan)
-        return NULL;
-    ProfileDef def = settings_profile(params->values, scan->height);
+    ProfileDef def = settings_profile(p, scan->height);
     GString *s = g_string_new("Nodes of the outline by side of the marching square and tolerance, pixels\n\n"
                               "square         area  perimeter    tol 0      0.5        1        2        4        8       16\n");
     gboolean ok = TRUE;
     for (gsize i = 0; ok && i < G_N_ELEMENTS(square); i++)
         ok = add_row(s, scan, &def, square[i], error);
-    scan_free(scan);
-    if (!ok)
-        g_prefix_error(error, "%s: ", file);
     return g_string_free(s, !ok);
+}
+
+char *ven_scan_table(const VenParams *params, GError **error)
+{
+    const Params *p = params->values;
+    const char *file = params_text(p, PARAM_SCAN_FILE);
+    Scan *scan = scan_read(file, 0, error);
+    if (!scan)
+        return NULL;
+    char *text = params_choice(p, PARAM_SCAN_METHOD) == 0 ? node_table(p, scan, error) : fang_table(p, scan, error);
+    scan_free(scan);
+    if (!text)
+        g_prefix_error(error, "%s: ", file);
+    return text;
 }

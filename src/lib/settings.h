@@ -28,7 +28,8 @@ Polygon *settings_outline(const Params *p, const SvgPlace *place, Vec2 *base, Ve
 
 /* [scan] of an image `height` pixels high. */
 ProfileDef settings_profile(const Params *p, uint32_t height);
-FangDef settings_fang(const Params *p, uint32_t height);
+/* False when something is given that the method does not use. */
+bool settings_fang(const Params *p, uint32_t height, FangDef *out, GError **error);
 FoundDef settings_found(const Params *p);
 
 /* [lsystem]; free with settings_lsystem_clear. */

@@ -75,15 +75,18 @@ void bent_clear(Bent *b)
     *b = (Bent){0};
 }
 
-/* The petiole of a real leaf is as long and as wide as the scan shows it. */
+/* The petiole of a real leaf is as long and as wide as the scan shows it. The stub of one that was cut off tells neither: it gets enough length to look
+ * like a stalk, and the width that the veins ask for. */
 static void real_petiole(const VenLeaf *leaf, SolidDef *def)
 {
+    const double least = 6.0; /* widths */
     const Profile *f = leaf->ground ? leaf->ground->profile : NULL;
     if (!f || !f->has_stalk || params_is_given(leaf->params, PARAM_MESH_PETIOLE_LENGTH))
         return;
     double segments = leaf->length / vec_dist(leaf->ground->base, leaf->ground->tip); /* a pixel */
-    def->petiole_length = f->stalk_length * segments;
-    def->petiole_radius = 0.5 * f->stalk_width * segments;
+    bool stub = f->stalk_length < least * f->stalk_width;
+    def->petiole_length = MAX(f->stalk_length, least * f->stalk_width) * segments;
+    def->petiole_radius = stub ? 0.0 : 0.5 * f->stalk_width * segments;
 }
 
 /* ---- levels of detail ---- */
@@ -401,6 +404,29 @@ static double leaf_metres(const VenLeaf *leaf)
     return 1e-3 * g->scan->mm_per_pixel * sqrt(g->to_scan.c * g->to_scan.c + g->to_scan.d * g->to_scan.d);
 }
 
+/* What would be found only when it is written, told before the work. */
+static gboolean check_writing(const VenShape *s, GError **error)
+{
+    const double bytes = 144.0, most = (double)((uint64_t)12 << 30); /* a pixel of the nine maps of a model, all at hand at once */
+    const Params *p = s->leaf->params;
+    gboolean wanted[MODEL_COUNT];
+    Keyframe *frame;
+    uint32_t n;
+    if (!settings_models(p, wanted, error) || !settings_keyframes(p, &frame, &n, error))
+        return FALSE;
+    keyframes_free(frame, n);
+    double needed = bytes * s->frame.width * s->frame.height;
+    if (needed <= most || !(wanted[MODEL_GLB] || wanted[MODEL_OBJ] || wanted[MODEL_POV]))
+        return TRUE;
+    g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
+                " = %" G_GINT64_FORMAT ": the maps of models would take %.0f GiB of memory; at most %.0f are allowed, enough for %.0f pixels",
+                params_integer(p, PARAM_TEXTURE_SIZE), needed / (double)(1 << 30), most / (double)(1 << 30), floor(sqrt(most / bytes)));
+    char *place = params_place(p, PARAM_TEXTURE_SIZE);
+    g_prefix_error(error, "%s", place);
+    g_free(place);
+    return FALSE;
+}
+
 VenShape *ven_shape(const VenLeaf *leaf, GError **error)
 {
     const Params *p = leaf->params;
@@ -411,7 +437,7 @@ VenShape *ven_shape(const VenLeaf *leaf, GError **error)
     real_petiole(leaf, &s->solid);
     s->unit = leaf_metres(leaf) / leaf->length;
     s->frame = leaf_frame(leaf, leaf->net->margin->box);
-    if (build(s, error) && bend_as_asked(s, p, leaf->seed, error))
+    if (check_writing(s, error) && build(s, error) && bend_as_asked(s, p, leaf->seed, error))
         return s;
     ven_shape_free(s);
     return NULL;

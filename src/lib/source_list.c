@@ -5,8 +5,14 @@
 
 static gboolean bad(GError **error, const char *path, unsigned line, const char *text)
 {
-    g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_SOURCES, "%s:%u: '%s' is no source: a line is x,y or x,y,step (segments from the base, tip along +y)",
-                path, line, text);
+    char *valid = g_utf8_make_valid(text, -1);
+    glong length = g_utf8_strlen(valid, -1);
+    char *shown = g_utf8_substring(valid, 0, MIN(length, 60));
+    g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_SOURCES,
+                "%s:%u: '%s%s' is no source: a line is x,y or x,y,step (segments from the base, tip along +y)", path, line, shown,
+                length > 60 ? "…" : "");
+    g_free(shown);
+    g_free(valid);
     return FALSE;
 }
 

@@ -146,12 +146,21 @@ Params *params_parse(const char *text, gsize length, const char *path, GError **
     return NULL;
 }
 
+/* A file that can't be read: the machine's fault if it lacks memory or file handles, else that of who named it. */
+static void refuse_file(const Place *place, int code, GError **error)
+{
+    if (code == ENOMEM || code == EMFILE || code == ENFILE || code == EIO)
+        g_set_error(error, G_FILE_ERROR, (gint)g_file_error_from_errno(code), "%s: %s", place->origin, g_strerror(code));
+    else
+        fail(place, PARAM_ERROR_FILE, error, "%s", g_strerror(code));
+}
+
 Params *params_load(const char *path, GError **error)
 {
     Place place = {path, 0, NULL};
     FILE *file = fopen(path, "rbe");
     if (!file) {
-        fail(&place, PARAM_ERROR_FILE, error, "%s", g_strerror(errno));
+        refuse_file(&place, errno, error);
         return NULL;
     }
     char *text = g_malloc(LARGEST_FILE + 1);
@@ -161,7 +170,7 @@ Params *params_load(const char *path, GError **error)
     fclose(file);
     Params *p = NULL;
     if (problem)
-        fail(&place, PARAM_ERROR_FILE, error, "%s", g_strerror(problem));
+        refuse_file(&place, problem, error);
     else
         p = params_parse(text, length, path, error);
     g_free(text);

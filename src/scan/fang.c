@@ -1,18 +1,25 @@
 #include "scan/fang.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "scan/fang_draw.h"
 #include "scan/fang_edges.h"
 #include "scan/fang_outline.h"
 #include "scan/fang_region.h"
+#include "scan/fang_rough.h"
 #include "scan/profile.h"
 
 #define MARGIN 8.0 /* around the leaf's box, pixels, besides the reach of smoothing */
+#define GROUND 64.0 /* around it, pixels: enough to tell what the ground's noise is */
+#define ENOUGH 0.5 /* of the margin must have edges, or it is not they that the contour follows */
+/* How much more or less than the rough region the edges may enclose: of its area, and of its margin, pixels (small leaves). */
+#define OFF_AREA 0.015
+#define OFF_MARGIN 0.5
 
 FangDef fang_def_default(void)
 {
-    return (FangDef){.edges = edges_def_default(), .corners = corners_def_default(), .fit = bezierfit_def_default()};
+    return (FangDef){.threshold = {CHANNEL_BEST, LEAF_BY_FRAME, -1.0}, .least_area = 0.05, .leaf = 1, .edges = edges_def_default(), .corners = corners_def_default(), .fit = bezierfit_def_default()};
 }
 
 void fang_profile_free(FangProfile *p)
@@ -51,16 +58,55 @@ static MaskBox around(const Scan *s, Box2 b, double margin)
 /* The operator whose response tells how far a place is from an edge, too: Sobel's for those that respond on lines only. */
 static EdgesOperator broad(EdgesOperator op) { return op == EDGES_CANNY || op == EDGES_LAPLACIAN ? EDGES_SOBEL : op; }
 
-/* Edges, and the region that they enclose. */
-static bool find_region(const Scan *s, const Threshold *t, const Mask *m, FangProfile *out, GError **error)
+/* The edge map of part of the scan, in the whole of it. */
+static GreyImage *put_back(const GreyImage *part, MaskBox b, const Scan *s)
 {
-    GreyImage *grey = grey_part(s, out->channel, (MaskBox){0, 0, s->width - 1, s->height - 1}), *response = NULL;
-    bool lower = out->used.automatic;
-    if (fang_choose_edges(s, t, grey, &out->used, error) && (response = edges_response(grey, broad(out->used.op), out->used.sigma, error)))
-        out->edges = fang_region(s, t, grey, response, lower, &out->used, m, &out->closed, error);
+    GreyImage *g = grey_image_new(s->width, s->height);
+    for (uint32_t y = 0; y < part->height; y++)
+        memcpy(g->px + (gsize)(b.y0 + y) * g->width + b.x0, part->px + (gsize)y * part->width, part->width * sizeof *part->px);
+    return g;
+}
+
+/* Whether the edges can be the leaf's margin. */
+static bool check_region(const FangProfile *p, MaskBox box, GError **error)
+{
+    const FangMatch *r = &p->region;
+    double around = 2.0 * ((box.x1 - box.x0 + 1.0) + (box.y1 - box.y0 + 1.0));
+    const char *channel = channel_name(p->threshold.channel);
+    if (!(r->continuity >= ENOUGH))
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF,
+                    "no leaf: the edges in the %s channel follow %.0f %% of its margin, half is needed; try another operator, smoothing or thresholds",
+                    channel, 100.0 * r->continuity);
+    else if (!(fabs(r->area - r->rough) <= OFF_AREA * r->rough + OFF_MARGIN * around))
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF,
+                    "no leaf: the edges in the %s channel enclose %.0f pixels where %.0f are leaf, which is %+.1f %%; about 2 %% are allowed; try another "
+                    "operator or less smoothing, or another scan.channel or scan.threshold",
+                    channel, r->area, r->rough, 100.0 * (r->area / r->rough - 1.0));
+    else
+        return true;
+    return false;
+}
+
+/* Edges, and the region that they enclose. */
+static bool find_region(const Scan *s, const Mask *m, MaskBox leaf, FangProfile *out, GError **error)
+{
+    double sigma = isfinite(out->used.sigma) ? CLAMP(out->used.sigma, 0.0, 100.0) : 0.0;
+    MaskBox box = around(s, (Box2){leaf.x0, s->height - 1.0 - leaf.y1, leaf.x1 + 1.0, s->height - (double)leaf.y0}, GROUND + fang_band(sigma) + 5.0 * sigma);
+    GreyImage *grey = grey_part(s, out->threshold.channel, box), *response = NULL, *map = NULL;
+    Mask w = mask_window(m, box);
+    double level = s->depth == 8 ? out->threshold.level : out->threshold.level / 257.0;
+    bool ok = fang_choose_edges(grey, level, &w, &out->used, error) &&
+              (response = edges_response(grey, broad(out->used.op), out->used.sigma, error)) &&
+              (map = edges_map(grey, &out->used, NULL, error));
+    if (ok) {
+        out->region = fang_region(response, map, out->used.sigma, &w);
+        out->edges = put_back(map, box, s);
+        ok = check_region(out, leaf, error);
+    }
     grey_image_free(grey);
     grey_image_free(response);
-    return out->edges != NULL;
+    grey_image_free(map);
+    return ok;
 }
 
 /* The border of the largest region enclosed, without the petiole, starting at the base. */
@@ -81,7 +127,7 @@ static bool find_border(const Scan *s, const Mask *m, const FangDef *def, FangPr
             g_propagate_error(error, why);
             return false;
         }
-        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: the edges in the %s channel enclose nothing", channel_name(out->channel));
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF, "no leaf: the edges in the %s channel enclose nothing", channel_name(out->threshold.channel));
         g_error_free(why);
         return false;
     }
@@ -99,7 +145,7 @@ static bool find_border(const Scan *s, const Mask *m, const FangDef *def, FangPr
 static bool find_contour(const Scan *s, FangProfile *out, GError **error)
 {
     MaskBox box = around(s, out->border->box, MARGIN + 5.0 * out->used.sigma);
-    GreyImage *grey = grey_part(s, out->channel, box);
+    GreyImage *grey = grey_part(s, out->threshold.channel, box);
     GreyImage *response = edges_response(grey, broad(out->used.op), out->used.sigma, error);
     grey_image_free(grey);
     if (!response)
@@ -113,7 +159,7 @@ static bool find_contour(const Scan *s, FangProfile *out, GError **error)
 static bool find_corners(const Scan *s, const FangDef *def, FangProfile *out, GError **error)
 {
     MaskBox box = around(s, out->contour->box, MARGIN + 4.0 * (def->corners.smoothing + def->corners.window));
-    GreyImage *grey = grey_part(s, out->channel, box);
+    GreyImage *grey = grey_part(s, out->threshold.channel, box);
     uint32_t n = out->contour->n;
     Vec2 *down = g_new(Vec2, n);
     for (uint32_t i = 0; i < n; i++)
@@ -134,10 +180,11 @@ static bool find_fit(const FangDef *def, FangProfile *out, GError **error)
     return out->fit != NULL;
 }
 
-static bool capture(const Scan *s, const Threshold *t, const Mask *m, const FangDef *def, FangProfile *out, GError **error)
+static bool capture(const Scan *s, const Mask *m, const FangDef *def, FangProfile *out, GError **error)
 {
-    return find_region(s, t, m, out, error) && find_border(s, m, def, out, error) && find_contour(s, out, error) &&
-           find_corners(s, def, out, error) && find_fit(def, out, error);
+    MaskBox leaf;
+    return fang_rough(s, &out->threshold, def, m, &leaf, error) && find_region(s, m, leaf, out, error) && find_border(s, m, def, out, error) &&
+           find_contour(s, out, error) && find_corners(s, def, out, error) && find_fit(def, out, error);
 }
 
 FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error)
@@ -148,8 +195,7 @@ FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error)
         return NULL;
     }
     Threshold t;
-    ThresholdDef by = {def->channel, LEAF_BY_FRAME, -1.0};
-    if (!threshold_find(s, &by, &t, error))
+    if (!threshold_find(s, &def->threshold, &t, error))
         return NULL;
     Mask m = {s->width, s->height, s->width, g_try_malloc((gsize)s->width * s->height)};
     if (!m.px) {
@@ -157,9 +203,9 @@ FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error)
         return NULL;
     }
     FangProfile *out = g_new0(FangProfile, 1);
-    out->channel = t.channel;
+    out->threshold = t;
     out->used = def->edges;
-    bool ok = capture(s, &t, &m, def, out, error);
+    bool ok = capture(s, &m, def, out, error);
     g_free(m.px);
     if (ok)
         return out;

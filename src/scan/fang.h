@@ -7,18 +7,22 @@
 #include "geom/polygon.h"
 #include "scan/corners.h"
 #include "scan/edges.h"
+#include "scan/fang_region.h"
 #include "scan/scan.h"
 #include "scan/threshold.h"
 
 typedef struct {
-    Channel channel;       /* that edges are looked for in; CHANNEL_BEST: as profile_capture chooses */
-    EdgesDef edges;        /* grey values are 0 … 255 whatever the depth. Automatic: thresholds by the strength of the leaf's margin, and more
-                            * smoothing than `sigma` where noise would be edges (scan/fang_edges.h) */
+    ThresholdDef threshold; /* of the rough region (scan/fang_rough.h); edges are looked for in its channel */
+    double close, open;     /* of the rough region, as in ProfileDef, pixels */
+    double least_area;      /* of a leaf, share of the largest */
+    uint32_t leaf;          /* which: 1 the largest, 2 the next */
+    EdgesDef edges;         /* grey values are 0 … 255 whatever the depth. Automatic: thresholds by the strength of the leaf's margin, and when
+                             * sigma is 0 as much smoothing as noise asks for (scan/fang_edges.h); any other sigma is kept to */
     CornersDef corners;
     BezierFitDef fit;
     bool keep_stalk;
     bool has_base, has_tip;
-    Vec2 base, tip;        /* y-up pixels, given by hand */
+    Vec2 base, tip;         /* y-up pixels, given by hand */
 } FangDef;
 
 /* The paper's: Roberts, Harris, chords. Chords leave real leaves by up to hundreds of pixels where a lobe has few corners;
@@ -26,11 +30,11 @@ typedef struct {
 FangDef fang_def_default(void);
 
 typedef struct {
-    GreyImage *edges;   /* the edge map, 1 on edges */
-    Channel channel;
+    GreyImage *edges;   /* the edge map around the leaf, 1 on edges; of the scan's size */
+    Threshold threshold;
     EdgesDef used;      /* sigma and thresholds that were used */
-    double closed;      /* gaps in the edges of up to twice this were closed, pixels */
-    Polygon *border;    /* of what the edges enclose, y-up pixels, counter-clockwise */
+    FangMatch region;     /* how well edges and rough region agree */
+    Polygon *border;    /* of the leaf by its edges, y-up pixels, counter-clockwise */
     Polygon *contour;   /* the same, each vertex moved to where the edge is strongest; vertex 0 is the base, or the petiole's end when it is kept */
     uint32_t base, tip; /* vertices of the contour */
     GArray *corners;    /* Corner: the characteristic points, along the contour */
@@ -39,14 +43,17 @@ typedef struct {
     double mm_per_pixel;
 } FangProfile;
 
-/* Pixels of a scan that fang_capture takes. Besides the scan it holds 24 to 35 bytes a pixel at its peak, up to 60 where all is noise. */
+/* Pixels of a scan that fang_capture takes. Besides the scan it holds 5 bytes a pixel of it, and 24 to 35 a pixel of the leaf's box. */
 #define FANG_MAX_PIXELS ((uint64_t)1 << 27)
 
-/* The largest leaf of a scan. The contour is the outer border of what the edges enclose, gaps in the edges of up to 8 pixels closed,
- * drawn in to the middle of the edges (scan/fang_region.h). When the fit crosses itself (deep teeth, few points) pieces are parted until
- * it doesn't; that always ends, at the contour itself. NULL and SCAN_ERROR_NO_LEAF when the edges enclose nothing, or much less or more
- * than is leaf by its level, SCAN_ERROR_SIZE beyond FANG_MAX_PIXELS, SCAN_ERROR_VALUE, EDGES_ERROR, CORNERS_ERROR or BEZIERFIT_ERROR for
- * settings that can't be used. */
+/* One leaf of a scan. The paper takes the operator's edges as the contour, from pictures where these are closed and nothing else is
+ * there. On scans they have gaps, and veins, grids and shadows are edges too. So here the level says about where the leaf is, and the
+ * edges within a band around that region's border say where its contour runs (scan/fang_region.h); it is then drawn in to the middle of
+ * the edges. When the fit crosses itself (deep teeth, few points) pieces are parted until it doesn't; that always ends, at the contour
+ * itself.
+ * NULL and SCAN_ERROR_NO_LEAF when there is no leaf, there are edges along less than half of its margin, or they enclose more than
+ * 2 % more or less than is leaf by its level; SCAN_ERROR_SIZE beyond FANG_MAX_PIXELS; SCAN_ERROR_VALUE, EDGES_ERROR, CORNERS_ERROR or
+ * BEZIERFIT_ERROR for settings that can't be used. */
 FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error);
 void fang_profile_free(FangProfile *p);
 

@@ -3,14 +3,15 @@
 #define SCAN_FANG_EDGES_H
 
 #include "scan/edges.h"
-#include "scan/threshold.h"
+#include "scan/mask.h"
 
-/* Chooses smoothing and thresholds for a channel's grey values (0 … 255) where def->automatic, by how strong the operator's response to
- * the margin is: M, the median of the greatest within a pixel of where the level crosses the threshold. Edges are responses above M/2,
- * and those above M/4 that are connected with them. The image is smoothed by the least of 0, 1, 1.5, 2, 3 and 4 pixels, but no less than
- * def->sigma, with which M/4 is above 2.5 times the usual response of the whole image: noise, texture, a grid. Otsu's threshold on the
- * responses, edges_map's own, serves where nothing but the margin responds; where a scan's noise fills half of it, it lies in the noise.
- * False and `error` for unusable settings. */
-bool fang_choose_edges(const Scan *s, const Threshold *t, const GreyImage *grey, EdgesDef *def, GError **error);
+/* Chooses thresholds where def->automatic, and smoothing where def->sigma is 0 as well, for grey values 0 … 255 of which `level` parts leaf
+ * and background and a mask of the same size that marks the rough region by MASK_LEAF and no other bit. M is the median of the operator's
+ * greatest responses within a pixel of where the level is crossed near the region's border. Edges are responses above M/2, and those
+ * above M/4 that are connected with them. The image is smoothed by the least of 0, 1, 1.5, 2, 3 and 4 pixels, for Canny's operator and the
+ * Laplacian no less than 1, with which M/4 is above 2.5 times the usual response of the ground: noise, texture, a grid; a sigma that is given
+ * is kept to. Otsu's threshold on the responses, edges_map's own, serves where nothing but the margin responds; where a scan's
+ * noise fills half of it, it lies in the noise. False and `error` for unusable settings. */
+bool fang_choose_edges(const GreyImage *grey, double level, const Mask *m, EdgesDef *def, GError **error);
 
 #endif

@@ -1,27 +1,27 @@
-/* From a map of edges to the region that they enclose. */
+/* From a leaf's rough region and the edges around its border to the region that the edges enclose. */
 #ifndef SCAN_FANG_REGION_H
 #define SCAN_FANG_REGION_H
 
 #include "scan/edges.h"
 #include "scan/mask.h"
-#include "scan/threshold.h"
 
-/* Marks what the edges enclose by MASK_LEAF in a mask of the scan's size, and returns the edge map; *closed is the radius by which gaps
- * were closed.
- *
- * What lies around is what the background's part of the image's frame is connected with: stretches of the frame between edges are leaf
- * when their mean level is on the leaf's side of the threshold, so a leaf may be cut by the frame. Gaps in the edges are closed by discs
- * of up to 4 pixels, and when `lower` also by thresholds as low as 2/3 and 4/9 of def->low, which is changed accordingly: by the first
- * of the choices, from strict to lax, that encloses 0.985 of the strict edges that any of them does (an outline with too wide a gap
- * leaves the edges of a lobe outside). Threads, loose edges, are taken off. The band of edge pixels itself is parted where the response
- * is greatest, by flooding it from both sides, lowest first (watershed, Meyer 1991): so neither a wide band nor a soft shadow beside the
- * margin moves the border.
- *
- * Plain parts between edges are leaf or around it by their mean level, like the frame.
- *
- * `response` is one that is not just lines. NULL and SCAN_ERROR_NO_LEAF when much less or more is enclosed than there is leaf by its
- * level, or `error` for unusable settings. O(pixels), and 16 bytes for each edge pixel. */
-GreyImage *fang_region(const Scan *s, const Threshold *t, const GreyImage *grey, const GreyImage *response, bool lower, EdgesDef *def,
-                       const Mask *m, double *closed, GError **error);
+/* How well edges and rough region agree. */
+typedef struct {
+    double rough, area; /* pixels of the rough region, and of the one that the edges enclose; petioles included, holes filled */
+    double continuity;  /* share of the margin that has an edge within 1.5 pixels; what lies on the image's frame is not counted */
+    double gap;         /* the longest stretch without, pixels. 0: the edges alone are a closed contour */
+} FangMatch;
+
+/* Half the width of the band in which edges are looked for, pixels: a level's border is off the margin by the scanner's blur, and
+ * smoothing moves edges by about sigma where the margin is bent. */
+double fang_band(double sigma);
+
+/* Moves the border of the region marked by MASK_LEAF to the edges within fang_band of it: the band is flooded from both sides, lowest
+ * response first, edges (`map`) last and the weaker of them first (watershed, Meyer 1991). So the border runs along the strongest of
+ * the edges that part inside from outside, and where they have gaps, along the strongest response there. Veins and lines that end in the band
+ * part nothing; those outside it do not count. Neither a wide edge nor a soft shadow beside the margin moves the border.
+ * `response` is one that is not just lines. Images are of the mask's size. The mask has no other bits, before and after. Where the
+ * response is nothing all over, the region stays as it is. O(pixels), and 16 bytes for each in the band. */
+FangMatch fang_region(const GreyImage *response, const GreyImage *map, double sigma, const Mask *m);
 
 #endif

@@ -1,99 +1,135 @@
 #include "scan/fill.h"
 
-#include <string.h>
+#include "scan/fill_grain.h"
+#include "scan/fill_pyramid.h"
+#include "scan/openings.h"
 
-#include "scan/mask.h"
+#define INSET 0.008     /* share of the root of the leaf's area: shadows at the rims of leaves that don't lie quite flat */
+#define LEAST_INSET 3.0 /* pixels: what scanners and JPEG blur */
+#define LONG 12.0       /* area of a part that is thinner than the inset but no tip, in squares of the inset */
 
-/* Way to the nearest kept pixel, found by sweeps that hand it on from neighbour to neighbour (Danielsson 1980): now and then a pixel off the nearest,
- * which no eye sees. */
-typedef struct {
-    int16_t x, y;
-} Way;
+double scan_fill_inset(double area) { return MAX(INSET * sqrt(area), LEAST_INSET); }
 
-enum { FAR = INT16_MAX };
+/* ---- what is surely leaf ---- */
+
+static bool any(const Mask *m, uint8_t bit)
+{
+    for (uint32_t y = 0; y < m->height; y++)
+        for (uint32_t x = 0; x < m->width; x++)
+            if (*mask_at(m, x, y) & bit)
+                return true;
+    return false;
+}
+
+/* MASK_STALK on long parts that the inset wiped out. */
+static void find_thin(const Mask *m, double inset)
+{
+    static const Flood count = {MASK_WORK | MASK_SEEN, MASK_WORK, MASK_SEEN, true};
+    static const Flood take = {MASK_WORK | MASK_SEEN | MASK_STALK, MASK_WORK | MASK_SEEN, MASK_STALK, true};
+    mask_dilate(m, MASK_CORE, MASK_WORK, inset + 1.0);
+    for (uint32_t y = 0; y < m->height; y++)
+        for (uint32_t x = 0; x < m->width; x++) {
+            uint8_t *px = mask_at(m, x, y);
+            bool rest = (*px & (MASK_LEAF | MASK_WORK)) == MASK_LEAF;
+            *px = (uint8_t)((*px & ~MASK_WORK) | (rest ? MASK_WORK : 0));
+        }
+    for (uint32_t y = 0; y < m->height; y++)
+        for (uint32_t x = 0; x < m->width; x++)
+            if ((*mask_at(m, x, y) & count.test) == count.want && (double)mask_flood(m, &count, x, y, NULL) >= LONG * inset * inset)
+                mask_flood(m, &take, x, y, NULL);
+}
+
+/* MASK_CORE: what lies `inset` within the leaf, and of long parts that are thinner what lies half as deep. */
+static bool mark_core(const Mask *m, double inset)
+{
+    do
+        mask_erode(m, MASK_LEAF, MASK_CORE, inset);
+    while (!any(m, MASK_CORE) && (inset *= 0.5) >= 0.5);
+    find_thin(m, inset);
+    mask_erode(m, MASK_LEAF, MASK_WORK, 0.5 * inset);
+    for (uint32_t y = 0; y < m->height; y++)
+        for (uint32_t x = 0; x < m->width; x++) {
+            uint8_t *px = mask_at(m, x, y);
+            if ((*px & (MASK_WORK | MASK_STALK)) == (MASK_WORK | MASK_STALK))
+                *px |= MASK_CORE;
+        }
+    mask_clear(m, MASK_WORK | MASK_SEEN | MASK_STALK);
+    return any(m, MASK_CORE);
+}
+
+/* ---- what takes the place of the rest ---- */
 
 typedef struct {
     Scan *scan;
+    Mask mask;
     MaskBox box;
-    uint32_t width, height;
-    Way *way; /* [height][width] */
+    FillPyramid means;
+    FillGrain grain;
 } Fill;
 
-static int64_t length2(Way w) { return w.x == FAR ? INT64_MAX : (int64_t)w.x * w.x + (int64_t)w.y * w.y; }
+enum { GRAIN_LEVEL = 2 }; /* grain is what means over 8 pixels don't have */
 
-/* Takes the way of the neighbour at dx, dy, when it is shorter. */
-static void ask(const Fill *f, uint32_t x, uint32_t y, int dx, int dy)
+static void put_sample(Scan *s, uint32_t x, uint32_t y, uint32_t channel, double value)
 {
-    int64_t i = (int64_t)x + dx, j = (int64_t)y + dy;
-    if (i < 0 || j < 0 || i >= f->width || j >= f->height)
-        return;
-    Way *own = &f->way[(gsize)y * f->width + x], other = f->way[(gsize)j * f->width + (gsize)i];
-    if (other.x == FAR || ABS(other.x) + 1 >= FAR || ABS(other.y) + 1 >= FAR)
-        return;
-    other.x = (int16_t)(other.x + dx);
-    other.y = (int16_t)(other.y + dy);
-    if (length2(other) < length2(*own))
-        *own = other;
+    gsize i = ((gsize)y * s->width + x) * s->channels + channel;
+    double most = s->depth == 8 ? 255.0 : 65535.0, v = CLAMP(value + 0.5, 0.0, most);
+    if (s->depth == 8)
+        ((uint8_t *)s->px)[i] = (uint8_t)v;
+    else
+        ((uint16_t *)s->px)[i] = (uint16_t)v;
 }
 
-static void sweep_row(const Fill *f, uint32_t y, int from)
+static double grain_at(const Fill *f, const GrainSource *from, uint32_t x, uint32_t y, uint32_t channel)
 {
-    for (uint32_t x = 0; x < f->width; x++) {
-        ask(f, x, y, 0, from);
-        ask(f, x, y, -1, from);
-        ask(f, x, y, 1, from);
-        ask(f, x, y, -1, 0);
+    uint32_t i = x % GRAIN_CELL, j = y % GRAIN_CELL;
+    i = from->x * GRAIN_CELL + (from->flip_x ? GRAIN_CELL - 1 - i : i);
+    j = from->y * GRAIN_CELL + (from->flip_y ? GRAIN_CELL - 1 - j : j);
+    return scan_sample(f->scan, f->box.x0 + i, f->box.y0 + j, channel) - fill_pyramid_at(&f->means, GRAIN_LEVEL, i + 0.5, j + 0.5);
+}
+
+static void fill_cell(const Fill *f, uint32_t cx, uint32_t cy, uint32_t channel)
+{
+    GrainSource from;
+    int lent = -1; /* not asked for yet */
+    for (uint32_t y = cy * GRAIN_CELL; y < MIN((cy + 1) * GRAIN_CELL, f->mask.height); y++)
+        for (uint32_t x = cx * GRAIN_CELL; x < MIN((cx + 1) * GRAIN_CELL, f->mask.width); x++) {
+            uint8_t px = *mask_at(&f->mask, x, y);
+            if ((px & (MASK_SEEN | MASK_CORE)) != MASK_SEEN)
+                continue;
+            double v = fill_pyramid_at(&f->means, 0, x + 0.5, y + 0.5);
+            if ((px & MASK_THIS) && lent < 0)
+                lent = f->means.n > GRAIN_LEVEL && fill_grain_source(&f->grain, cx, cy, &from);
+            if ((px & MASK_THIS) && lent > 0)
+                v += grain_at(f, &from, x, y, channel);
+            put_sample(f->scan, f->box.x0 + x, f->box.y0 + y, channel, v);
+        }
+}
+
+static void fill_all(Fill *f)
+{
+    fill_grain_init(&f->grain, f->scan, &f->mask, f->box);
+    fill_pyramid_init(&f->means, &f->mask);
+    for (uint32_t c = 0; c < f->scan->channels; c++) {
+        fill_pyramid_take(&f->means, f->scan, c, &f->mask, f->box);
+        for (uint32_t y = 0; y < f->grain.height; y++)
+            for (uint32_t x = 0; x < f->grain.width; x++)
+                fill_cell(f, x, y, c);
     }
-    for (uint32_t x = f->width; x-- > 0;)
-        ask(f, x, y, 1, 0);
-}
-
-static void copy_pixels(const Fill *f)
-{
-    gsize size = (gsize)f->scan->channels * f->scan->depth / 8, stride = size * f->scan->width;
-    uint8_t *px = f->scan->px;
-    for (uint32_t y = 0; y < f->height; y++)
-        for (uint32_t x = 0; x < f->width; x++) {
-            Way w = f->way[(gsize)y * f->width + x];
-            uint8_t *to = px + (f->box.y0 + y) * stride + (f->box.x0 + x) * size;
-            if (w.x != FAR && (w.x || w.y))
-                memcpy(to, to + w.y * (gssize)stride + w.x * (gssize)size, size);
-        }
-}
-
-/* Sets MASK_LEAF on pixels whose centres lie in the outline and which the threshold takes for leaf. */
-static void mark_leaf(const Scan *s, const Polygon *outline, const Threshold *t, const Mask *m, MaskBox box)
-{
-    for (uint32_t y = 0; y < m->height; y++)
-        for (uint32_t x = 0; x < m->width; x++) {
-            uint32_t i = box.x0 + x, j = box.y0 + y;
-            bool in = polygon_contains(outline, vec2(i + 0.5, s->height - (j + 0.5)));
-            if (in && t)
-                in = ((double)channel_value(s, t->channel, i, j) < t->level) == t->dark;
-            *mask_at(m, x, y) = in ? MASK_LEAF : 0;
-        }
+    fill_pyramid_clear(&f->means);
+    fill_grain_clear(&f->grain);
 }
 
 void scan_fill(Scan *s, const Polygon *outline, const Threshold *t, double inset, uint32_t around)
 {
-    double x0 = outline->box.x0 - around, x1 = outline->box.x1 + around, y0 = s->height - outline->box.y1 - around, y1 = s->height - outline->box.y0 + around;
-    if (x1 <= 0.0 || y1 <= 0.0 || x0 >= s->width || y0 >= s->height)
+    Fill f = {.scan = s};
+    if (!openings_box(s, outline, around, &f.box))
         return;
-    Fill f = {.scan = s, .box = {(uint32_t)MAX(x0, 0.0), (uint32_t)MAX(y0, 0.0), (uint32_t)MIN(x1, s->width - 1.0), (uint32_t)MIN(y1, s->height - 1.0)}};
-    f.width = f.box.x1 - f.box.x0 + 1;
-    f.height = f.box.y1 - f.box.y0 + 1;
-    uint8_t *px = g_malloc((gsize)f.width * f.height);
-    Mask m = {f.width, f.height, f.width, px};
-    mark_leaf(s, outline, t, &m, f.box);
-    mask_erode(&m, MASK_LEAF, MASK_CORE, inset);
-    f.way = g_new(Way, (gsize)f.width * f.height);
-    for (gsize i = 0; i < (gsize)f.width * f.height; i++)
-        f.way[i] = px[i] & MASK_CORE ? (Way){0, 0} : (Way){FAR, 0};
-    g_free(px);
-    for (uint32_t y = 0; y < f.height; y++)
-        sweep_row(&f, y, -1);
-    for (uint32_t y = f.height; y-- > 0;)
-        sweep_row(&f, y, 1);
-    copy_pixels(&f);
-    g_free(f.way);
+    f.mask = (Mask){f.box.x1 - f.box.x0 + 1, f.box.y1 - f.box.y0 + 1, f.box.x1 - f.box.x0 + 1, NULL};
+    f.mask.px = g_malloc0((gsize)f.mask.width * f.mask.height);
+    openings_mark(s, outline, t, openings_least(outline->area), &f.mask, f.box);
+    if (mark_core(&f.mask, inset)) {
+        mask_dilate(&f.mask, MASK_THIS, MASK_SEEN, around);
+        fill_all(&f);
+    }
+    g_free(f.mask.px);
 }

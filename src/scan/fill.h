@@ -1,4 +1,4 @@
-/* The leaf's colours carried on over its border and into its holes, so that no texture shows what lay behind it. */
+/* The leaf's colours carried on over its border and into its openings, so that no texture shows what lay behind it. */
 #ifndef SCAN_FILL_H
 #define SCAN_FILL_H
 
@@ -6,8 +6,14 @@
 #include "scan/scan.h"
 #include "scan/threshold.h"
 
-/* Replaces every pixel of the leaf's box, `around` pixels wider, that does not lie at least `inset` pixels within the outline (y-up pixels) by the nearest
- * one that does; with a threshold (NULL: none) also those on its other side, which are holes. O(pixels of the box); 5 bytes each for the time. */
+/* Replaces what in the outline (y-up pixels) and up to `around` pixels beyond it is not surely leaf: what lies within `inset` pixels of the outline or of an
+ * opening (scan/openings.h; `t` NULL: none are looked for), where scanners blur and shadows fall. Parts of a leaf that are narrower throughout and long,
+ * like petioles, keep their middle. What takes its place goes on smoothly from the leaf's own colours, as a membrane stretched between
+ * them would (Laplace's equation, solved from coarse to fine on a pyramid of means; Gortler et al. 1996, push-pull), and within the outline has the grain
+ * of the leaf near it. Some 30 operations a pixel of the box and channel; about 3 bytes a pixel of the box for the time. */
 void scan_fill(Scan *s, const Polygon *outline, const Threshold *t, double inset, uint32_t around);
+
+/* What is wise for a leaf of that area: 0.8 % of its root, 3 pixels at least. */
+double scan_fill_inset(double area);
 
 #endif

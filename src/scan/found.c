@@ -13,7 +13,11 @@ static const double primary_share = 0.4;     /* … with as much contrast times 
 static const double least_contrast = 2.0, most_contrast = 8.0;  /* over noise, of what may be a vein: at sensitivities 1 and 0 */
 static const double weed_share = 0.33;       /* of the upper quartile of contrast times width in its order: the least prominent vein */
 static const double least_gain = 0.022;      /* evidence times length that makes a vein, of the leaf's length */
-enum { MOST_VEINS = 250 };
+static const double clear_contrast = 8.0;     /* over noise, the median of secondaries that stand in combs: shorter ones are looked for, … */
+static const double short_gain = 0.3;        /* … of so much of that evidence, … */
+static const double kin_contrast = 0.6;      /* … and with so much of that contrast */
+static const uint32_t least_kin = 60, most_dismissed = 60;
+enum { MOST_VEINS = 4000 };                  /* with those dismissed; a palmate leaf of many secondaries has a thousand */
 
 FoundDef found_def_default(void) { return (FoundDef){.orders = 2, .sensitivity = 0.5}; }
 
@@ -25,6 +29,7 @@ typedef struct {
     FoundPaths *paths;
     GArray *vein; /* FoundVein */
     Vec2 base, tip;
+    double asked_contrast; /* over noise, of veins, whatever the sensitivity */
 } Search;
 
 static Vec2 pixel_at(const Search *s, uint32_t i) { return vec2(i % s->leaf.width + 0.5, i / s->leaf.width + 0.5); }
@@ -75,7 +80,7 @@ static void settle(const Search *s, FoundVein *v)
     bool basal = parent->order == 1 && vec_dist(pixel_at(s, v->pixel[0]), s->base) < primary_start * s->leaf.length;
     bool long_enough = chain_length(s, v) > primary_length * s->leaf.length;
     v->order = basal && long_enough && prominence(v) > primary_share * prominence(mid) ? 1 : (uint8_t)(parent->order + 1);
-    v->ghost = v->order > s->orders || v->contrast < most_contrast - (most_contrast - least_contrast) * s->def->sensitivity;
+    v->ghost = v->order > s->orders || v->contrast < s->asked_contrast || v->contrast < most_contrast - (most_contrast - least_contrast) * s->def->sensitivity;
 }
 
 static void add(Search *s, FoundVein v)
@@ -106,21 +111,50 @@ static bool find_midvein(Search *s, double least)
     return true;
 }
 
+static int by_value(const void *a, const void *b, void *user)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Until no path is left, or only such as are none, one after the other. */
 static void find_others(Search *s, double least)
 {
-    while (s->vein->len < MOST_VEINS) {
+    uint32_t dismissed = 0;
+    while (s->vein->len < MOST_VEINS && dismissed < most_dismissed) {
         FoundVein v = {0};
         v.pixel = found_paths_best(s->paths, least, &v.n_pixels, &v.parent, &v.gain);
         if (!v.pixel)
             return;
         add(s, v);
+        dismissed = vein_at(s, s->vein->len - 1)->ghost ? dismissed + 1 : 0;
     }
 }
 
-static int by_value(const void *a, const void *b, void *user)
+/* The median of the contrasts of secondaries; 0 when they are too few for a comb. */
+static double usual_contrast(const Search *s)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
+    double *all = g_new(double, s->vein->len + 1), usual = 0.0;
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < s->vein->len; k++)
+        if (!vein_at(s, k)->ghost && vein_at(s, k)->order == 2)
+            all[n++] = vein_at(s, k)->contrast;
+    if (n >= least_kin) {
+        g_qsort_with_data(all, (gint)n, sizeof *all, by_value, NULL);
+        usual = all[n / 2];
+    }
+    g_free(all);
+    return usual;
+}
+
+/* In combs of many secondaries, shorter ones as clear as those are veins too: combs taper towards tip and base of each lobe. */
+static void find_short(Search *s, double least)
+{
+    double usual = usual_contrast(s);
+    if (usual < clear_contrast)
+        return;
+    s->asked_contrast = kin_contrast * usual;
+    find_others(s, short_gain * least);
 }
 
 /* Drops what is far less prominent than most of its order, with what leaves it. */
@@ -173,9 +207,12 @@ Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 t
     s.paths = found_paths_new(&s.leaf, s.ridges, threshold, s.base);
     s.vein = g_array_new(FALSE, FALSE, sizeof(FoundVein));
     g_array_set_clear_func(s.vein, vein_clear);
-    if (find_midvein(&s, 3.0 * least))
+    if (find_midvein(&s, 3.0 * least)) {
         find_others(&s, least);
+        find_short(&s, least);
+    }
     weed(&s);
+    found_hub(&s.leaf, (FoundVein *)s.vein->data, s.vein->len, s.base);
     Drawing *d = draw(&s);
     g_array_free(s.vein, TRUE);
     found_paths_free(s.paths);

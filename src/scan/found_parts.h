@@ -77,4 +77,7 @@ uint32_t *found_paths_best(FoundPaths *p, double least, uint32_t *n, uint32_t *i
 /* Smooth points at even steps along the ridge, widths measured. */
 void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v);
 
+/* Primaries that run together at the base begin at one node on the midvein, which is the first of the veins and begins at the base itself. */
+void found_hub(const FoundLeaf *l, FoundVein *vein, uint32_t n, Vec2 base);
+
 #endif

@@ -33,17 +33,17 @@ struct FoundPaths {
     uint32_t turn_cost;
     uint8_t *inside;
     uint8_t *along;     /* [cells][8] strength, 0 … 255 */
-    uint8_t *band;      /* [cells] 1 + the vein that it is near, 0 none; EVERYBODY around the base */
-    uint8_t *wall;      /* [cells] 1 + the vein whose line runs there; 0 none */
+    uint16_t *band;     /* [cells] 1 + the vein that it is near, 0 none; EVERYBODY around the base */
+    uint16_t *wall;     /* [cells] 1 + the vein whose line runs there; 0 none */
     uint32_t *distance; /* [states] */
     uint8_t *from;      /* [states] 0, 1, 2: stepped with way - 1, way, way + 1; TURNED_LEFT …; SOURCE */
-    uint8_t *owner;     /* [states] the vein it started from */
+    uint16_t *owner;    /* [states] the vein it started from */
     uint8_t *unseen;    /* [states] length of the gap it is in, cells */
     float *gain;        /* [states] evidence so far */
     uint32_t cost[256][3];
     FoundQueue queue;
 };
-enum { EVERYBODY = 255 };
+enum { EVERYBODY = UINT16_MAX };
 static const float hopeless = -1e9f; /* gain of paths that are given up: these only replace others that were longer */
 
 static inline uint32_t kind(uint32_t way) { return way % 2 ? 2 : way % 4 ? 1 : 0; }
@@ -80,11 +80,11 @@ FoundPaths *found_paths_new(const FoundLeaf *l, const FoundRidges *r, double thr
     gsize cells = (gsize)p->width * p->height, states = cells * WAYS;
     p->inside = g_new0(uint8_t, cells);
     p->along = g_new0(uint8_t, cells * FOUND_MOVES);
-    p->band = g_new0(uint8_t, cells);
-    p->wall = g_new0(uint8_t, cells);
+    p->band = g_new0(uint16_t, cells);
+    p->wall = g_new0(uint16_t, cells);
     p->distance = g_new(uint32_t, states);
     p->from = g_new0(uint8_t, states);
-    p->owner = g_new0(uint8_t, states);
+    p->owner = g_new0(uint16_t, states);
     p->unseen = g_new0(uint8_t, states);
     p->gain = g_new0(float, states);
     found_queue_init(&p->queue);
@@ -259,7 +259,7 @@ static void set_source(FoundPaths *p, uint32_t state, uint32_t id)
 {
     p->distance[state] = 0;
     p->from[state] = SOURCE;
-    p->owner[state] = (uint8_t)id;
+    p->owner[state] = (uint16_t)id;
     p->unseen[state] = 0;
     p->gain[state] = 0.0f;
     found_queue_put(&p->queue, 0, state);
@@ -273,7 +273,7 @@ static bool may_leave(Vec2 heading, uint32_t way)
     return !(n > 0.0) || (along < 0.97 * n && along > 0.0);
 }
 
-static void mark_disc(const FoundPaths *p, uint32_t cell, double r, uint8_t value, uint8_t *in, uint8_t *changed)
+static void mark_disc(const FoundPaths *p, uint32_t cell, double r, uint16_t value, uint16_t *in, uint8_t *changed)
 {
     int32_t x = (int32_t)(cell % p->width), y = (int32_t)(cell / p->width), n = (int32_t)ceil(r);
     for (int32_t j = MAX(0, y - n); j <= MIN((int32_t)p->height - 1, y + n); j++)
@@ -295,8 +295,8 @@ void found_paths_add(FoundPaths *p, uint32_t id, const uint32_t *pixel, uint32_t
 {
     uint8_t *changed = g_new0(uint8_t, (gsize)p->width * p->height);
     for (uint32_t k = 0; k < n; k++) {
-        mark_disc(p, cell_of(p, pixel[k]), 1.0, (uint8_t)(id + 1), p->wall, changed);
-        mark_disc(p, cell_of(p, pixel[k]), band / CELL, (uint8_t)(id + 1), p->band, changed);
+        mark_disc(p, cell_of(p, pixel[k]), 1.0, (uint16_t)(id + 1), p->wall, changed);
+        mark_disc(p, cell_of(p, pixel[k]), band / CELL, (uint16_t)(id + 1), p->band, changed);
     }
     renew(p, changed);
     for (uint32_t k = 0; k < open_n; k++) {

@@ -73,12 +73,15 @@ Scan *scan_file_new(const ScanFile *f, uint64_t width, uint64_t height, uint32_t
     return s ? s : scan_file_no_memory(f, error);
 }
 
-/* Pixels a millimetre that are the same both ways and that some device has: 1 … 50 000 dots an inch. */
-static double mm_per_pixel(const ScanFile *f)
+/* The size of pixels, if some device has such: 1 … 50 000 dots an inch, up to eight times as many one way as the other. */
+static void set_scale(Scan *s, const ScanFile *f)
 {
-    double x = f->across_mm, y = f->down_mm;
-    bool plausible = x >= 1.0 / 25.4 && x <= 50000.0 / 25.4 && fabs(x - y) <= 0.01 * x;
-    return plausible ? 2.0 / (x + y) : 0.0;
+    double x = f->across_mm, y = f->down_mm, least = 1.0 / 25.4, most = 50000.0 / 25.4;
+    if (!(x >= least && x <= most && y >= least && y <= most && x <= 8.0 * y && y <= 8.0 * x))
+        return;
+    bool square = fabs(x - y) <= 0.01 * x, on_side = f->orientation >= 5 && f->orientation <= 8;
+    s->mm_per_pixel = square ? 2.0 / (x + y) : 1.0 / sqrt(x * y);
+    s->aspect = square ? 1.0 : on_side ? x / y : y / x;
 }
 
 typedef Scan *(*ReadFormat)(ScanFile *f, GError **error);
@@ -119,7 +122,7 @@ static Scan *read_open(ScanFile *f, GError **error)
         return scan_file_no_memory(f, error);
     }
     if (s) {
-        s->mm_per_pixel = mm_per_pixel(f);
+        set_scale(s, f);
         s->as_stored = read != scan_read_tiff && (f->orientation < 2 || f->orientation > 8);
     }
     return s;

@@ -21,7 +21,8 @@ typedef struct {
     uint32_t width, height; /* as seen: the file's orientation has been applied */
     uint32_t channels;      /* 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; colours are not multiplied by alpha */
     uint32_t depth;         /* bits a sample: 8 or 16 */
-    double mm_per_pixel;    /* 0: the file doesn't say, or its pixels are not square */
+    double mm_per_pixel;    /* 0: the file doesn't say; of pixels that are not square the root of their area, so that areas are right */
+    double aspect;          /* width of a pixel over its height, as the file says; 1 where the difference is below 1 %; 0: it doesn't say */
     void *px;               /* [height][width][channels], rows from the top: uint8_t or uint16_t */
     bool as_stored;         /* other programs show the file so, too: a PNG or JPEG that no orientation tag turns */
 } Scan;

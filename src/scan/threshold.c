@@ -304,7 +304,8 @@ bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GErr
     histograms_clear(&h);
     if (def->level < 0.0 && !(out->contrast >= LEAST_CONTRAST)) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF,
-                    "no leaf: the image is all of one shade (the two halves of its %s values differ by %.2g %%)", channel_name(out->channel), 100.0 * out->contrast);
+                    "no leaf: the image is all of one shade (parted by %s as well as it goes, its darker and lighter pixels differ by %.2g %% of the scale; at least %g %% are needed)",
+                    channel_name(out->channel), 100.0 * out->contrast, 100.0 * LEAST_CONTRAST);
         return false;
     }
     return true;

@@ -214,6 +214,10 @@ bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
     few_fill(nearest, pos);
     if (s->def.pattern == PATTERN_OPEN || nearest->n == 0)
         return true;
+    for (uint32_t j = 0; j < nearest->n; j++) {
+        uint32_t v = nearest->v[j], parent = s->veins.parent[v];
+        sight->stride2[j] = parent == NO_POINT ? HUGE_VAL : vec_dist2(pos[v], pos[parent]);
+    }
     if (q && q->n_nearest <= POINTS_MOST && q->n_rivals <= SQUARE_RIVALS)
         rival->n = points_rivals(pos, q->rival, q->n_rivals, c->place, nearest->v, nearest->n, s->reach != NULL, rival->v);
     else

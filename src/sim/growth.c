@@ -212,6 +212,47 @@ static Polygon *cut_edges(const Polygon *p, double longest)
 
 static void find_back(Blade *b);
 
+/* Rates compound over the steps: what they make of the blade must still be one. Stretches only rise or only fall, so the end tells of the way
+ * there. */
+static gboolean check_stretch(const Blade *b, GError **error)
+{
+    const double least = 1e-4, most = 1e4;
+    struct GrowthTable *t = b->table;
+    table_update(t, b->last_step);
+    for (uint32_t i = 0; i < 2 * SAMPLES; i++) {
+        uint32_t k = i / 2;
+        double stretch = i % 2 ? t->py[k] : t->px[k];
+        if (stretch >= least && stretch <= most)
+            continue;
+        g_set_error(error, GROWTH_ERROR, GROWTH_ERROR_VALUE,
+                    "growth.%s: at height y = %.3g a rate of %.3g makes the blade more than %g times as %s in growth.steps = %u; that is no leaf any more",
+                    i % 2 ? "rate_y" : "rate_x", (t->y0 + t->h * k) / b->def.initial_length, i % 2 ? t->gy[k] : t->gx[k], most,
+                    stretch > most ? i % 2 ? "long" : "wide" : i % 2 ? "short" : "narrow", b->last_step);
+        return FALSE;
+    }
+    return TRUE;
+}
+
+static gboolean check_shape(const Blade *b, GError **error)
+{
+    const double longest = 1e6; /* segments */
+    double size = MAX(b->box.x1 - b->box.x0, b->box.y1 - b->box.y0);
+    if (!(b->length >= 1.0 && size <= longest)) {
+        g_set_error(error, GROWTH_ERROR, GROWTH_ERROR_VALUE,
+                    "growth.rate_x and rate_y over growth.steps = %u would make a leaf of %.3g segments, %.3g base to tip; it must be 1 base to tip at "
+                    "least and %g in all at most", b->last_step, size, b->length, longest);
+        return FALSE;
+    }
+    uint32_t i, j;
+    if (polygon_crossing(b->shape, &i, &j)) {
+        g_set_error(error, GROWTH_ERROR, GROWTH_ERROR_VALUE,
+                    "growth.rate_x and rate_y over growth.steps = %u would make the margin cross or touch itself near %g,%g", b->last_step,
+                    b->shape->v[i].x, b->shape->v[i].y);
+        return FALSE;
+    }
+    return TRUE;
+}
+
 Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
 {
     if (!check(def, error))
@@ -232,7 +273,15 @@ Blade *blade_new(const Polygon *leaf, const GrowthDef *def, GError **error)
             b->last_step = (uint32_t)ceil((def->final_length - def->initial_length) / def->step);
     }
     b->step = b->last_step; /* look at the end, then start */
+    if (b->moving && !check_stretch(b, error)) {
+        blade_free(b);
+        return NULL;
+    }
     refresh(b);
+    if (b->moving && !check_shape(b, error)) {
+        blade_free(b);
+        return NULL;
+    }
     b->widest = b->box;
     b->last_length = b->length;
     if (b->moving)

@@ -112,11 +112,11 @@ static void show_open(Simulation *s, uint32_t k, uint32_t v, double d2, double w
 static inline double four_most(const Four *v) { return MAX(MAX((*v)[0], (*v)[1]), MAX((*v)[2], (*v)[3])); }
 
 /* Most often those of the four that are plain turn to new nodes and stay plain; the others are no matter. FALSE: see for each. */
-static inline __attribute__((always_inline)) bool all_move_on(Simulation *s, uint32_t k, const Block *b, FourMask trouble, double within2,
-                                                              const Few *few)
+static inline __attribute__((always_inline)) bool all_move_on(Simulation *s, uint32_t k, const Block *b, const FourMask *trouble_of,
+                                                              double within2, const Few *few)
 {
     FourMask plain = b->d2 >= FOUR(0.0);
-    trouble = (trouble | (b->which < (FourMask){0, 0, 0, 0}) | (b->d2 < FOUR(within2))) & plain;
+    FourMask trouble = (*trouble_of | (b->which < (FourMask){0, 0, 0, 0}) | (b->d2 < FOUR(within2))) & plain;
     uint32_t marks;
     memcpy(&marks, s->mark + k, sizeof marks);
     if (s->reach || FOUR_ANY(trouble))
@@ -135,6 +135,7 @@ static FOUR_WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t la
 {
     double within2 = MAX(kill2(s), past2(s));
     Four most2 = FOUR(-1.0);
+    const FourMask none = {0, 0, 0, 0};
     for (uint32_t k = first; k < last; k += 4) {
         uint32_t n = MIN(4, last - k);
         Block b;
@@ -142,7 +143,7 @@ static FOUR_WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t la
             block_look(s, k, 4, few, &b);
         else
             block_look(s, k, n, few, &b);
-        if (n == 4 && all_move_on(s, k, &b, (FourMask){0, 0, 0, 0}, within2, few)) {
+        if (n == 4 && all_move_on(s, k, &b, &none, within2, few)) {
             most2 = FOUR_PICK(b.d2 > most2, b.d2, most2);
             continue;
         }
@@ -205,44 +206,68 @@ static bool show_closed(Simulation *s, uint32_t k, uint32_t v, double d2, bool a
     return true;
 }
 
-static FOUR_WIDE double look_closed_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, bool *parted)
+/* Which of the four keep their old node beside the new nearest one? It excludes the old one when it is its child and near by, as it mostly is. */
+static inline __attribute__((always_inline)) void block_stays(const Simulation *s, uint32_t k, uint32_t n, const Block *b,
+                                                              const Sight *sight, FourMask *out)
+{
+    const Veins *veins = &s->veins;
+    const Few *few = &sight->nearest;
+    FourMask stays = {0, 0, 0, 0};
+    for (uint32_t l = 0; l < n; l++) {
+        uint32_t old = s->near[k + l];
+        int64_t j = b->which[l];
+        if (j < 0 || (veins->parent[few->v[j]] == old && sight->stride2[j] <= s->near2[k + l]))
+            continue;
+        Vec2 v = vec2(few->x[j], few->y[j]);
+        stays[l] = vec_dist2(v, veins->pos[old]) > s->near2[k + l] ? -1 : 0;
+    }
+    *out = stays;
+}
+
+/* For which of them are there rivals that neither the new nearest node nor another of the few excludes? */
+static inline __attribute__((always_inline)) void block_rivals(const Simulation *s, const Block *b, const Sight *sight, FourMask *out)
 {
     const Few *few = &sight->nearest, *rival = &sight->rival;
+    uint32_t at[4];
+    for (uint32_t l = 0; l < 4; l++)
+        at[l] = b->which[l] < 0 ? 0 : (uint32_t)b->which[l];
+    Four vx = {few->x[at[0]], few->x[at[1]], few->x[at[2]], few->x[at[3]]};
+    Four vy = {few->y[at[0]], few->y[at[1]], few->y[at[2]], few->y[at[3]]};
+    FourMask more = {0, 0, 0, 0};
+    for (uint32_t j = 0; j < rival->n; j++) {
+        Vec2 r = vec2(rival->x[j], rival->y[j]);
+        Four rx = FOUR(r.x), ry = FOUR(r.y), d2 = (rx - b->x) * (rx - b->x) + (ry - b->y) * (ry - b->y);
+        FourMask open = (rx - vx) * (rx - vx) + (ry - vy) * (ry - vy) > d2;
+        for (uint32_t i = 0; i < few->n && !s->reach && FOUR_ANY(open); i++) {
+            Vec2 u = vec2(few->x[i], few->y[i]);
+            Four dx = FOUR(u.x) - b->x, dy = FOUR(u.y) - b->y;
+            open &= ~((dx * dx + dy * dy < d2) & (FOUR(vec_dist2(u, r)) <= d2));
+        }
+        more |= open;
+    }
+    *out = more;
+}
+
+static FOUR_WIDE double look_closed_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, bool *parted)
+{
+    const Few *few = &sight->nearest;
     double most2 = -1.0, within2 = MAX(kill2(s), past2(s));
     Four far2 = FOUR(-1.0);
     for (uint32_t k = first; k < last; k += 4) {
         uint32_t n = MIN(4, last - k);
         Block b;
-        if (n == 4)
+        FourMask more = {0, 0, 0, 0}, stays;
+        if (n == 4) {
             block_look(s, k, 4, few, &b);
-        else
+            block_stays(s, k, 4, &b, sight, &stays);
+        } else {
             block_look(s, k, n, few, &b);
-        double x[4], y[4], ox[4], oy[4], o2[4];
-        for (uint32_t l = 0; l < 4; l++) {
-            bool moves = l < n && b.which[l] >= 0;
-            Vec2 old = moves ? s->veins.pos[s->near[k + l]] : vec2(0.0, 0.0);
-            int64_t j = moves ? b.which[l] : 0;
-            x[l] = few->x[j];
-            y[l] = few->y[j];
-            ox[l] = old.x;
-            oy[l] = old.y;
-            o2[l] = moves ? s->near2[k + l] : HUGE_VAL;
+            block_stays(s, k, n, &b, sight, &stays);
         }
-        Four vx = {x[0], x[1], x[2], x[3]}, vy = {y[0], y[1], y[2], y[3]};
-        Four fx = vx - (Four){ox[0], ox[1], ox[2], ox[3]}, fy = vy - (Four){oy[0], oy[1], oy[2], oy[3]};
-        FourMask stays = fx * fx + fy * fy > (Four){o2[0], o2[1], o2[2], o2[3]}, more = {0, 0, 0, 0};
-        for (uint32_t j = 0; j < rival->n; j++) {
-            Four rx = FOUR(rival->x[j]), ry = FOUR(rival->y[j]);
-            Four d2 = (rx - b.x) * (rx - b.x) + (ry - b.y) * (ry - b.y);
-            FourMask open = (rx - vx) * (rx - vx) + (ry - vy) * (ry - vy) > d2;
-            for (uint32_t i = 0; i < few->n && !s->reach && FOUR_ANY(open); i++) { /* is it excluded by another of the nearest few? */
-                double ux = few->x[i], uy = few->y[i];
-                Four dx = FOUR(ux) - b.x, dy = FOUR(uy) - b.y;
-                open &= ~((dx * dx + dy * dy < d2) & (FOUR(vec_dist2(vec2(ux, uy), vec2(rival->x[j], rival->y[j]))) <= d2));
-            }
-            more |= open;
-        }
-        if (n == 4 && all_move_on(s, k, &b, stays | more, within2, few)) {
+        if (sight->rival.n)
+            block_rivals(s, &b, sight, &more);
+        FourMask trouble = stays | more;
+        if (n == 4 && all_move_on(s, k, &b, &trouble, within2, few)) {
             far2 = FOUR_PICK(b.d2 > far2, b.d2, far2);
             continue;
         }

@@ -109,6 +109,10 @@ bool simulation_step(Simulation *s)
     sources_place(s);
     s->counts.most_sources = MAX(s->counts.most_sources, sources_alive(s));
     uint32_t live = veins_develop(s);
+    if (live || s->n_fresh || s->blade->step <= s->blade->last_step) {
+        s->last_use = s->blade->step;
+        s->last_darts = s->counts.darts;
+    }
     sources_remove(s);
     s->counts.end = judge(s, live);
     return s->counts.end == END_RUNNING;

@@ -143,6 +143,8 @@ struct Simulation {
     Paths paths;
     double dart_carry;
     uint32_t misses; /* darts in a row that found no room */
+    uint32_t last_use; /* step in which the blade or a vein grew last; how many darts there were then */
+    uint64_t last_darts;
     /* sources that wait to appear (margin, list), in the order in which they may */
     ListedSource *waiting;
     uint32_t n_waiting, next_waiting;
@@ -210,6 +212,7 @@ typedef struct {
 /* The fresh nodes that a crowd looks at. */
 typedef struct {
     Few nearest; /* those that may be nearest to a source, ascending */
+    double stride2[POINTS_MOST]; /* closed: the squared distances from the nearest to their parents */
     Few rival;   /* closed: those that the nearest one need not exclude */
 } Sight;
 bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight); /* FALSE when there are too many, and each source must look for itself */

@@ -70,6 +70,12 @@ TIMEOUT = 60
 GLIB = re.compile(r"\*\*\*MEMORY-ERROR\*\*\*: (.*GSlice: failed.*\n)?|GLib \(gthread-posix.c\): .*\n?")
 
 
+def differ(left, wanted):
+    """Where two trees differ, for a message."""
+    left, wanted = left or {}, wanted or {}
+    return "differing: " + " ".join(sorted(n for n in set(left) | set(wanted) if left.get(n) != wanted.get(n))[:6])
+
+
 class Fault(Exception):
     pass
 
@@ -218,7 +224,7 @@ class Case:
         shutil.rmtree(folder)
         os.unlink(count)
         whole = left == self.after
-        check(whole or left == self.before, what, "half-written", status, said, sorted(set(left) ^ set(self.after))[:5])
+        check(whole or left == self.before, what, "half-written", status, said, differ(left, self.after))
         if status == self.status and stdout == self.stdout:
             check(whole, what, "exit status", status, "but nothing written", said)
             return reached
@@ -311,10 +317,10 @@ def signalled(args, earlier, number, rounds):
         else:
             # -number: before the command minds signals, when nothing has been made
             check(status in (0, 128 + number, -number), "round", i, "exit status", status, said)
-            check(left == after if status == 0 else left in (before, after), "round", i, "half-written, exit status", status, said)
+            check(left == after if status == 0 else left in (before, after), "round", i, "half-written, exit status", status, said, differ(left, after))
         killed += status != 0
         status, _, said = run(args, folder)
-        check(status == 0 and tree(folder) == after, "round", i, "the run after it:", status, said)
+        check(status == 0 and tree(folder) == after, "round", i, "the run after it:", status, said, differ(tree(folder), after))
         shutil.rmtree(folder)
     shutil.rmtree(root)
     return f"{killed} of {rounds} runs were stopped"

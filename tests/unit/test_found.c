@@ -1,11 +1,12 @@
-/* Veins found in painted leaves whose veins are known; the score against brute force; real scans where there are any: in the folder that
- * VENATION_SCANS names, else shared/scans beside the checkout. */
+/* Veins found in painted leaves whose veins are known; the score against brute force; params/scans/grape.jpg against its tracing; other real scans
+ * where there are any: in the folder that VENATION_SCANS names, else shared/scans beside the checkout. */
 #include <glib.h>
 #include <math.h>
 #include <string.h>
 
 #include "geom/dtrig.h"
 #include "geom/random.h"
+#include "import/drawing_file.h"
 #include "scan/found.h"
 #include "scan/found_queue.h"
 #include "scan/profile.h"
@@ -242,6 +243,24 @@ static void test_pinnate(void)
     check_pinnate(3, -40, 6.0, 0.4);
 }
 
+/* How far the primaries' first points lie apart at most, the midvein's left out, and from the midvein. */
+static void check_node(const Drawing *d, double apart)
+{
+    const Vec2 *first = NULL;
+    for (uint32_t k = 1; k < d->n; k++) {
+        if (d->vein[k].order != 1)
+            continue;
+        Vec2 q = d->vein[k].point[0];
+        double off = HUGE_VAL;
+        for (uint32_t i = 1; i < d->vein[0].n; i++)
+            off = MIN(off, segment_distance(d->vein[0].point[i - 1], d->vein[0].point[i], q));
+        g_assert_cmpfloat(off, <=, apart);
+        g_assert_cmpfloat(first ? vec_dist(*first, q) : 0.0, <=, apart);
+        first = first ? first : &d->vein[k].point[0];
+    }
+    g_assert_nonnull(first);
+}
+
 /* Five veins from the base are five primaries. */
 static void test_palmate(void)
 {
@@ -260,8 +279,42 @@ static void test_palmate(void)
     FoundScore score = found_score(d, truth, 0.006 * 900);
     g_assert_cmpuint(count_order(d, 1), ==, 5);
     g_assert_cmpuint(d->n, ==, 5);
+    check_node(d, 5.0);
     g_assert_cmpfloat(score.precision, >, 0.95);
     g_assert_cmpfloat(score.recall, >, 0.95);
+    drawing_free(d);
+    drawing_free(truth);
+    scan_free(s);
+    g_free(cover);
+    polygon_free(outline);
+}
+
+/* A midvein and n secondaries a side, which grow shorter towards base and tip with the blade. */
+static Drawing *comb(uint32_t n)
+{
+    Drawing *d = drawing_new();
+    add_line(d, base_point, vec2(985, 350), 0.0, 9.0, 1);
+    for (int side = -1; side <= 1; side += 2)
+        for (uint32_t i = 0; i < n; i++) {
+            double x = 130 + 800.0 * i / n, to = x + 25, u = (to - 550) / 450, reach = 0.8 * 260 * sqrt(1.0 - u * u);
+            add_line(d, vec2(x, 350), vec2(to, 350 + side * 0.4 * reach), 0.0, 3.0, 2);
+        }
+    return d;
+}
+
+/* In combs short veins count as the long ones beside them do. */
+static void test_comb(void)
+{
+    Polygon *outline = ellipse();
+    Drawing *truth = comb(45);
+    double *cover = covered(truth, 0.0);
+    Scan *s = painted(outline, cover, 3, 45, 3.0);
+    FoundDef def = found_def_default();
+    Drawing *d = found(s, outline, &def);
+    FoundScore score = found_score(d, truth, 0.006 * 900);
+    g_test_message("comb: %u veins of %u, precision %.3f, recall %.3f", d->n, truth->n, score.precision, score.recall);
+    g_assert_cmpfloat(score.precision, >, 0.85);
+    g_assert_cmpfloat(score.recall, >, 0.93);
     drawing_free(d);
     drawing_free(truth);
     scan_free(s);
@@ -485,6 +538,45 @@ static Drawing *found_in(const char *name)
     return d;
 }
 
+/* The leaf that comes with the program, against a botanist's tracing of it; no vein runs over the paper that shows through its sinuses. */
+static void test_grape(void)
+{
+    GError *error = NULL;
+    char *scan = g_test_build_filename(G_TEST_DIST, "..", "..", "params", "scans", "grape.jpg", NULL);
+    char *traced = g_test_build_filename(G_TEST_DIST, "..", "..", "params", "scans", "grape_veins.txt", NULL);
+    Scan *s = scan_read(scan, 0, &error);
+    g_assert_no_error(error);
+    Drawing *truth = drawing_read_tracing(traced, s->height, &error);
+    g_assert_no_error(error);
+    ProfileDef def = profile_def_default();
+    Threshold t;
+    GPtrArray *all = profile_capture(s, &def, &t, &error);
+    g_assert_no_error(error);
+    const Profile *p = g_ptr_array_index(all, 0);
+    double length = vec_dist(p->base, p->tip);
+    FoundDef how = found_def_default();
+    Drawing *d = found_veins(s, p->outline, p->base, p->tip, &how, &error);
+    g_assert_no_error(error);
+    FoundScore score = found_score(d, truth, 0.006 * length);
+    g_test_message("grape: %u veins, precision %.3f, recall %.3f", d->n, score.precision, score.recall);
+    g_assert_cmpfloat(score.precision, >, 0.83);
+    g_assert_cmpfloat(score.recall, >, 0.91);
+    g_assert_cmpuint(count_order(d, 1), ==, 5);
+    for (uint32_t k = 0; k < d->n; k++)
+        for (uint32_t i = 0; i < d->vein[k].n; i++) {
+            Vec2 q = d->vein[k].point[i];
+            g_assert_true(q.x > 0.0 && q.y > 0.0 && q.x < s->width && q.y < s->height);
+            if (vec_dist(q, p->base) > 0.1 * length && vec_dist(q, p->tip) > 0.02 * length) /* veins are pale as paper at the base */
+                g_assert_cmpfloat(channel_value(s, t.channel, (uint32_t)q.x, (uint32_t)(s->height - q.y)), <, t.level + 30.0); /* paper is at 230 */
+        }
+    drawing_free(d);
+    drawing_free(truth);
+    g_ptr_array_free(all, TRUE);
+    scan_free(s);
+    g_free(scan);
+    g_free(traced);
+}
+
 static void test_real(void)
 {
     static const struct {
@@ -513,12 +605,14 @@ int main(int argc, char **argv)
     g_test_add_func("/found/position", test_position);
     g_test_add_func("/found/pinnate", test_pinnate);
     g_test_add_func("/found/palmate", test_palmate);
+    g_test_add_func("/found/comb", test_comb);
     g_test_add_func("/found/blank", test_blank);
     g_test_add_func("/found/same-bytes", test_same_bytes);
     g_test_add_func("/found/refused", test_refused);
     g_test_add_func("/found/odd", test_odd);
     g_test_add_func("/found/score", test_score);
     g_test_add_func("/found/queue", test_queue);
+    g_test_add_func("/found/grape", test_grape);
     g_test_add_func("/found/real", test_real);
     return g_test_run();
 }

@@ -279,8 +279,19 @@ static void test_pov(void)
     g_assert_nonnull(strstr(scene, "#include \"oak.inc\""));
     g_assert_null(strstr(scene, folder));
     check_camera(&l, scene);
+    g_assert_null(strstr(text, "oak_opacity.png"));
     g_free(text);
     g_free(scene);
+    l.m.holes = TRUE; /* both sides are clear where the opacity map is */
+    g_assert_true(export_pov(&l.m, inc, pov, &error));
+    text = contents(inc, NULL);
+    const char *first = strstr(text, "oak_opacity.png"), *second = first ? strstr(first + 1, "oak_opacity.png") : NULL;
+    g_assert_nonnull(second);
+    g_assert_null(strstr(second + 1, "oak_opacity.png"));
+    g_assert_nonnull(strstr(second, "rgbt 1"));
+    check_include(&l, text);
+    g_free(text);
+    l.m.holes = FALSE;
     for (int k = 1; k < 4; k++) { /* a union of nothing would be an error */
         l.m.n_tubes = k & 1 ? 0 : TUBES;
         l.m.veins = k & 2 ? NULL : &l.veins;

@@ -62,7 +62,8 @@ static void assert_pixels(const Scan *s, uint32_t channels, uint32_t depth, cons
 
 typedef struct {
     int colour, bits, interlace;
-    bool trns, phys;
+    bool trns;
+    uint32_t phys; /* height of a pixel, widths; 0: no resolution is said */
     unsigned orientation;
 } PngKind;
 
@@ -85,7 +86,7 @@ static void write_png(const PngKind *k, const uint16_t *value, uint32_t samples)
     if (k->trns)
         png_set_tRNS(png, info, alpha, 2, &clear);
     if (k->phys)
-        png_set_pHYs(png, info, 11811, 11811, PNG_RESOLUTION_METER);
+        png_set_pHYs(png, info, 11811, 11811 / k->phys, PNG_RESOLUTION_METER);
     png_byte exif[26] = {'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 0x12, 0, 3, 0, 0, 0, 1, 0, (png_byte)k->orientation};
     if (k->orientation)
         png_set_eXIf_1(png, info, sizeof exif, exif);
@@ -157,6 +158,22 @@ static void test_png(void)
                 g_assert_cmpfloat(fabs(s->mm_per_pixel - (k.phys ? 25.4 / 300.0 : 0.0)), <=, 1e-5);
                 scan_free(s);
             }
+}
+
+/* Pixels that are not square: areas are right, and which way they are long is known however the image lies. */
+static void test_png_aspect(void)
+{
+    uint16_t value[W * H * 3] = {0};
+    for (uint32_t tall = 1; tall <= 10; tall += 3)
+        for (unsigned o = 0; o <= 8; o += 2) {
+            PngKind k = {.colour = PNG_COLOR_TYPE_RGB, .bits = 8, .interlace = PNG_INTERLACE_NONE, .phys = tall, .orientation = o};
+            write_png(&k, value, 3);
+            Scan *s = read_ok();
+            double mm = tall > 8 ? 0.0 : 25.4 / 300.0 * sqrt(tall), aspect = tall > 8 ? 0.0 : o > 4 ? tall : 1.0 / tall;
+            g_assert_cmpfloat(fabs(s->mm_per_pixel - mm), <=, 1e-4);
+            g_assert_cmpfloat(fabs(s->aspect - aspect), <=, 1e-3 * aspect);
+            scan_free(s);
+        }
 }
 
 /* JPEG */
@@ -871,6 +888,7 @@ int main(int argc, char **argv)
     g_assert_nonnull(dir);
     path = g_build_filename(dir, "scan", NULL);
     g_test_add_func("/scan/png", test_png);
+    g_test_add_func("/scan/png-aspect", test_png_aspect);
     g_test_add_func("/scan/png_exif", test_png_exif);
     g_test_add_func("/scan/jpeg", test_jpeg);
     g_test_add_func("/scan/jpeg_exif", test_jpeg_exif);
