@@ -39,7 +39,11 @@ void batch_remove(const char *folder);
 /* What is there of all variants: missing ones, and those from other parameters, which count as missing. */
 typedef struct {
     uint64_t grown, failed, missing;
+    uint64_t stale; /* of the missing ones: there, but of other parameters */
 } BatchCount;
+
+/* Counts alone. */
+void batch_count(const BatchDef *def, BatchCount *count);
 
 /* Writes <out>/manifest.jsonl and manifest.csv from all rows, in order, each beside its place and renamed. Memory does not go with the number of variants.
  * Rows of other parameters are written as missing. */

@@ -14,6 +14,7 @@
 #include "geom/random.h"
 
 enum { SPLIT_STREAM = RANDOM_SWEEP + 2, SPLITS = 2 };
+#define CARD_BEGINS "Leaves grown by Venation "
 static const char *const split_name[SPLITS] = {"train", "val"};
 
 /* Folders of the data set, and the files of a leaf that go there. */
@@ -41,6 +42,18 @@ gboolean dataset_params(Params *p, const char *origin, GError **error)
         if (!params_set(p, set[i].id, set[i].value, origin, error))
             return FALSE;
     return TRUE;
+}
+
+gboolean dataset_check_place(const char *out, GError **error)
+{
+    char *folder = g_build_filename(out, "dataset", NULL), *card = g_build_filename(folder, "README.txt", NULL), *text = NULL;
+    gboolean ours = !g_file_test(folder, G_FILE_TEST_EXISTS) || (g_file_get_contents(card, &text, NULL, NULL) && g_str_has_prefix(text, CARD_BEGINS));
+    if (!ours)
+        g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_EXIST, "%s: is there and no data set of a sweep; it would be replaced: move it away, or choose another --output", folder);
+    g_free(text);
+    g_free(card);
+    g_free(folder);
+    return ours;
 }
 
 static int split_of(const Dataset *d, const SweepVariant *v)
@@ -203,7 +216,7 @@ static gboolean write_card(const Dataset *d, GError **error)
 {
     char *path = g_build_filename(d->root, "README.txt", NULL), *name = g_path_get_basename(sweep_path(d->def->sweep));
     char *text = g_strdup_printf(
-        "Leaves grown by Venation %s from %s: %" G_GUINT64_FORMAT " to train with, %" G_GUINT64_FORMAT " to validate (val); parted by %s.\n\n"
+        CARD_BEGINS "%s from %s: %" G_GUINT64_FORMAT " to train with, %" G_GUINT64_FORMAT " to validate (val); parted by %s.\n\n"
         "images        the leaf as a scanner sees it\n"
         "lamina        part of the pixel that the blade covers, 0 to 255\n"
         "vein          part of the pixel that veins cover, 0 to 255\n"

@@ -15,6 +15,9 @@
 /* Sets what such leaves are written as: maps, specimen, and nothing else. */
 gboolean dataset_params(Params *p, const char *origin, GError **error);
 
+/* FALSE with an error where a folder of that name is in the way that is no data set of ours. */
+gboolean dataset_check_place(const char *out, GError **error);
+
 /* Lays the data set out from the leaves that are there. Files are linked, or copied where that can't be. A part `validation` (0 … 1) of the
  * leaves is for validation: chosen by the seed, so that leaves of one seed are on one side; by the variant where seeds don't vary. An old data set there is
  * replaced when the new one is complete. Memory does not go with the number of variants. */

@@ -95,26 +95,36 @@ static void add_row(Manifest *m, const char *json)
 static void fill(Manifest *m, BatchCount *count)
 {
     const Sweep *s = m->def->sweep;
-    each_column(s, add_heading, m->table->text, NULL);
+    *count = (BatchCount){0};
+    if (m->table)
+        each_column(s, add_heading, m->table->text, NULL);
     for (uint64_t i = 0; i < sweep_count(s); i++) {
         Row row;
         row_read(s, m->def->out, i, &row);
         bool there = row.outcome != ROW_MISSING && is_current(m, &row);
         char *missing = there ? NULL : row_missing(s, &row.variant);
-        add_row(m, there ? row.json : missing);
+        if (m->table)
+            add_row(m, there ? row.json : missing);
         count->grown += there && row.outcome == ROW_GROWN;
         count->failed += there && row.outcome == ROW_FAILED;
         count->missing += !there;
+        count->stale += !there && row.outcome != ROW_MISSING;
         g_free(missing);
         row_clear(&row);
     }
+}
+
+void batch_count(const BatchDef *def, BatchCount *count)
+{
+    Manifest m = {.def = def, .keys = keys_new(def)};
+    fill(&m, count);
+    keys_free(m.keys);
 }
 
 gboolean manifest_write(const BatchDef *def, BatchCount *count, GError **error)
 {
     char *lines = g_build_filename(def->out, "manifest.jsonl", NULL), *table = g_build_filename(def->out, "manifest.csv", NULL);
     Manifest m = {.def = def, .keys = keys_new(def)};
-    *count = (BatchCount){0};
     gboolean ok = FALSE;
     if ((m.lines = sink_open(lines, error)) != NULL) {
         if ((m.table = sink_open(table, error)) != NULL)

@@ -121,9 +121,31 @@ static gboolean read_args(Sweeping *w, const Verb *verb, const SweepArgs *a)
 
 /* ---- what is grown ---- */
 
+/* An option that the sweep would override says nothing. */
+static gboolean check_free(const Sweeping *w, int id, const char *option, GError **error)
+{
+    for (uint32_t k = 0; k < sweep_keys(w->sweep); k++)
+        if (sweep_key(w->sweep, k).id == id) {
+            g_set_error(error, PARAM_ERROR, PARAM_ERROR_VALUE, "%s: %s gives %s its values", option, sweep_path(w->sweep), sweep_key(w->sweep, k).key);
+            return FALSE;
+        }
+    return TRUE;
+}
+
+/* Size may vary from leaf to leaf of a data set; what is written may not. */
+static gboolean put_dataset(Sweeping *w, GError **error)
+{
+    static const ParamId fixed[] = {PARAM_TEXTURE_MAPS, PARAM_TEXTURE_EXR, PARAM_TEXTURE_DEPTH, PARAM_EXPORT_SPECIMEN, PARAM_EXPORT_VEINS_IMAGE, PARAM_EXPORT_SVG,
+                                    PARAM_EXPORT_NETWORK};
+    for (gsize i = 0; i < G_N_ELEMENTS(fixed); i++)
+        if (!check_free(w, fixed[i], "--dataset", error))
+            return FALSE;
+    return dataset_params(w->params, "--dataset", error) && dataset_check_place(w->dir, error);
+}
+
 static gboolean put(Sweeping *w, const char *option, const char *key, const char *value, GError **error)
 {
-    return params_set(w->params, (ParamId)param_find(key), value, option, error);
+    return check_free(w, param_find(key), option, error) && params_set(w->params, (ParamId)param_find(key), value, option, error);
 }
 
 /* --write: what is not in the list is off. */
@@ -157,7 +179,8 @@ static gboolean check_set(const Sweeping *w, const char *assignment, GError **er
     for (uint32_t k = 0; k < sweep_keys(w->sweep); k++) {
         SweepKey key = sweep_key(w->sweep, k);
         gsize n = strlen(key.key);
-        if (strncmp(assignment, key.key, n) == 0 && assignment[n] == '=') {
+        const char *from = assignment + strspn(assignment, " \t");
+        if (strncmp(from, key.key, n) == 0 && from[n + strspn(from + n, " \t")] == '=') {
             g_set_error(error, PARAM_ERROR, PARAM_ERROR_VALUE, "--set %s: %s gives %s its values", assignment, sweep_path(w->sweep), key.key);
             return FALSE;
         }
@@ -176,7 +199,7 @@ static gboolean read_sweep(Sweeping *w, GError **error)
         if (!check_set(w, *s, error) || !params_override(w->params, *s, error))
             return FALSE;
     if ((a->maps && !put(w, "--maps", "texture.maps", a->maps, error)) || (a->size && !put(w, "--size", "texture.size", a->size, error)) ||
-        (a->write && !choose_writing(w, error)) || (a->dataset && !dataset_params(w->params, "--dataset", error)))
+        (a->write && !choose_writing(w, error)) || (a->dataset && !put_dataset(w, error)))
         return FALSE;
     w->def.labels = a->dataset;
     w->def.sweep = w->sweep;
@@ -294,6 +317,17 @@ static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed,
     g_string_free(s, TRUE);
 }
 
+/* Leaves that were grown with other options than these are none that they could be collected by. */
+static int check_settings(const Sweeping *w)
+{
+    BatchCount count;
+    batch_count(&w->def, &count);
+    return count.stale == 0 ? 0
+                            : cli_fail(EXIT_BAD_INPUT,
+                                       "%s: %" G_GUINT64_FORMAT " of the leaves there are of other parameters or options: collect with those they were grown with, or grow them anew",
+                                       w->dir, count.stale);
+}
+
 static int carry_out(Sweeping *w)
 {
     GError *error = NULL;
@@ -306,7 +340,7 @@ static int carry_out(Sweeping *w)
         return run_report(error, FALSE);
     w->def.staging = output_staging(w->output);
     w->progress = w->args->quiet ? NULL : progress_new(w->name);
-    int status = w->args->collect ? 0 : grow_all(w, &end);
+    int status = w->args->collect ? check_settings(w) : grow_all(w, &end);
     if (status != 0)
         return status;
     if (!w->args->shard && !collect(w, &count, &error))
@@ -350,7 +384,12 @@ static gboolean trial_tick(const BatchState *now, gpointer user) { return g_get_
 /* Grows the variant in the middle in a folder that goes again. */
 static void estimate(Sweeping *w)
 {
-    uint64_t count = sweep_count(w->sweep), mine = (count - w->def.shard - 1) / w->def.shards + 1, middle = w->def.shard + mine / 2 * w->def.shards;
+    uint64_t count = sweep_count(w->sweep);
+    if (w->def.shard >= count) {
+        fputs("no variant is in this part\n", stderr);
+        return;
+    }
+    uint64_t mine = (count - w->def.shard - 1) / w->def.shards + 1, middle = w->def.shard + mine / 2 * w->def.shards;
     char *folder = g_dir_make_tmp("venation-trial-XXXXXX", NULL), *staging = folder ? g_build_filename(folder, "staging", NULL) : NULL;
     if (!folder)
         return;

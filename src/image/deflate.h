@@ -1,6 +1,5 @@
-/* Compressing as zlib does (RFC 1950, 1951), with Intel's ISA-L: on maps it takes a fifth of zlib's time at its lowest level for files of about
- * the same size. Bytes depend on the version of the library and on the instructions that the processor has, as those of zlib depend on its version;
- * what they stand for doesn't. */
+/* Compressing with zlib (RFC 1950, 1951). ISA-L takes a fifth of its time for files of about the same size, but one file in some thousands comes out in
+ * other bytes from run to run; libdeflate can't stream. */
 #ifndef IMAGE_DEFLATE_H
 #define IMAGE_DEFLATE_H
 

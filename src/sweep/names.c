@@ -108,6 +108,8 @@ gboolean sweep_check_name(const Spot *spot, const char *name, GError **error)
     else if (name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-")] ||
              name[length - 1] == '.' || *name == '-')
         wrong = "must be of the letters A to Z, digits, and _ . + -, begin with no - and end with no point";
+    else if (g_ascii_strcasecmp(name, "sweep") == 0)
+        wrong = "is what a sweep calls files of its own";
     if (!wrong)
         return TRUE;
     SweepField f = {.key = (char *)"name"};

@@ -218,7 +218,7 @@ def test_array_with_a_node_that_dies():
     cluster = Cluster(os.path.join(os.getcwd(), "cluster"))
     try:
         array = cluster.submit("--array=1-6", SCRIPT, "many.ini", "-q", "-o", "out")
-        last = cluster.submit(f"--dependency=afterok:{array}", SCRIPT, "many.ini", "-q", "-o", "out")
+        last = cluster.submit(f"--dependency=afterany:{array}", SCRIPT, "many.ini", "-q", "-o", "out")
         until("the first leaves", lambda: len(leaves()) >= 3)
         cluster.lose("leaf2")
         before = len(leaves())

@@ -317,7 +317,7 @@ def test_does_only_what_is_missing():
     holds(sweep("many.ini", "--set", "width.exponent=3").err, "12 leaves grown, 0 were there")
     write("blade.svg", BLADE.replace("-50", "-60"))
     holds(sweep("many.ini", "--set", "width.exponent=3").err, "12 leaves grown, 0 were there")
-    holds(sweep("many.ini", "--collect", status=3).err, "12 missing")
+    holds(sweep("many.ini", "--collect", status=3).err, "12 of the leaves there are of other parameters")
 
 
 def test_failures_are_kept_apart():
@@ -344,6 +344,18 @@ def test_full_disk_stops_the_run():
 
 
 # --- what it refuses --------------------------------------------------------------------------------------------
+
+def test_options_that_say_nothing():
+    sweep_file("[sweep]\nparams = leaf.ini\ntexture.size = 32; 64\nexport.svg = yes; no\n")
+    for args in (["--size", "64"], ["--write", "none"], ["--dataset"], ["--set", "texture.size = 16"]):
+        check_refused(run("sweep", "many.ini", *args), 3, "many.ini gives ")
+    os.makedirs("out/many/dataset")
+    write("out/many/dataset/mine.txt", "x")
+    sweep_file()
+    same(run("sweep", "many.ini", "--dataset").status, 1)
+    same(os.listdir("out/many/dataset"), ["mine.txt"])
+    same(run("sweep", "many.ini", "--dry-run", "--shard", "20/30").status, 0)
+
 
 def test_refusals():
     cases = {

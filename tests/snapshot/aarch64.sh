@@ -12,7 +12,7 @@ tmp=$(mktemp -d "${TMPDIR:-/tmp}/venation-aarch64-XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 trap 'exit 129' HUP INT TERM
 sys=${1:-$tmp/sysroot}
-libraries=libc6-dev,libglib2.0-dev,libpng-dev,libisal-dev,libopenexr-dev,libjpeg62-turbo-dev,libtiff-dev,libjson-glib-dev,libgts-dev,libsuitesparse-dev,librsvg2-dev,libcairo2-dev
+libraries=libc6-dev,libglib2.0-dev,libpng-dev,zlib1g-dev,libopenexr-dev,libjpeg62-turbo-dev,libtiff-dev,libjson-glib-dev,libgts-dev,libsuitesparse-dev,librsvg2-dev,libcairo2-dev
 [ -d "$sys" ] || mmdebstrap --quiet --variant=extract --architecture=arm64 --include="$libraries" bookworm "$sys"
 cat >"$tmp/cross" <<CROSS
 [binaries]
