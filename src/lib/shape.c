@@ -338,7 +338,7 @@ static gboolean build(VenShape *s, GError **error)
         s->skeleton = skeleton_refine(coarse, s->mesh);
     skeleton_free(coarse);
     if (!s->mesh)
-        return FALSE;
+        return error && g_error_matches(*error, MESH_ERROR, MESH_ERROR_SIZE) ? settings_prefix(leaf->params, PARAM_MESH_MAX_AREA, error) : FALSE;
     find_fixed(s);
     int choice = params_choice(leaf->params, PARAM_MESH_MEMBRANE);
     s->membrane = membrane_new(s->mesh, s->fixed, s->n_fixed, choice == MEMBRANE_CHOICE_BILAPLACE ? MEMBRANE_BILAPLACE : MEMBRANE_LAPLACE, error);

@@ -126,8 +126,14 @@ static VenLeaf *run(const Pass *pass, GError **error)
         stopped = !report(pass, sim);
     }
     VenLeaf *leaf = NULL;
+    SimulationCounts c = simulation_counts(sim);
     if (stopped)
-        g_set_error(error, G_IO_ERROR, G_IO_ERROR_CANCELLED, "stopped at step %u", simulation_counts(sim).step);
+        g_set_error(error, G_IO_ERROR, G_IO_ERROR_CANCELLED, "stopped at step %u", c.step);
+    else if (c.end == END_CROWDED)
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "at step %u there are %u sources and %u vein nodes, more than can be kept; sources.density = %g must be lower, "
+                    "sources.birth_distance_sources = %g or sources.birth_distance_veins = %g higher, or the leaf smaller", c.step, c.sources, c.nodes,
+                    pass->def->density, pass->def->birth_distance_sources, pass->def->birth_distance_veins);
     else
         leaf = leaf_new(pass->params, pass->ground, pass->def, sim);
     simulation_free(sim);

@@ -26,7 +26,7 @@ const char *end_reason_text(EndReason r)
 {
     static const char *const text[] = {"running", "every source was reached", "no vein can reach the sources left", "veins.max_steps",
                                        "no source ever found room", "read from a file",
-                                       "drawn, not grown", "written by an L-system"};
+                                       "drawn, not grown", "written by an L-system", "too many sources or vein nodes"};
     return text[r];
 }
 
@@ -107,6 +107,10 @@ bool simulation_step(Simulation *s)
         return false;
     grow_blade(s);
     sources_place(s);
+    if (s->n_sources >= MOST_SOURCES || s->veins.n >= MOST_NODES) {
+        s->counts.end = END_CROWDED;
+        return false;
+    }
     s->counts.most_sources = MAX(s->counts.most_sources, sources_alive(s));
     uint32_t live = veins_develop(s);
     if (live || s->n_fresh || s->blade->step <= s->blade->last_step) {
@@ -122,11 +126,19 @@ bool simulation_step(Simulation *s)
 
 static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
 {
-    double area = d->leaf->area * b->last_length * b->last_length;
+    double first = d->leaf->area * d->growth.initial_length * d->growth.initial_length;
+    double last = b->moving ? b->last_shape->area : d->leaf->area * b->last_length * b->last_length, area = MAX(first, last);
     if (d->placement == PLACEMENT_DARTS && d->density * area > 1e8) {
         g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
                     "sources.density = %g asks for %.3g darts a step on a blade of %.3g square segments; at most 1e8 are possible",
                     d->density, d->density * area, area);
+        return FALSE;
+    }
+    double room = d->birth_distance_sources > 0.0 ? 0.7 * area / (d->birth_distance_sources * d->birth_distance_sources) : HUGE_VAL; /* when jammed */
+    if (d->placement != PLACEMENT_LIST && MIN(room, d->density * area) > MOST_SOURCES) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "sources.density = %g with sources.birth_distance_sources = %g makes %.3g sources at once on a blade of %.3g square segments; at "
+                    "most %.3g can be kept", d->density, d->birth_distance_sources, MIN(room, d->density * area), area, (double)MOST_SOURCES);
         return FALSE;
     }
     if (d->placement == PLACEMENT_DARTS && !d->only_while_growing && MAX(d->birth_distance_veins, d->kill_distance) <= 0.0) {
@@ -141,7 +153,7 @@ static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
 /* About how far apart sources will lie, for the cell size of their index. */
 static double source_spacing(const SimulationDef *d, const Blade *b)
 {
-    double length = b->last_length, apart = 1.0;
+    double length = b->last_length, apart = d->density > 1.0 ? sqrt(1.0 / d->density) : 1.0;
     if (d->placement == PLACEMENT_MARGIN)
         apart = sqrt(1.0 / MAX(d->density, 1e-12));
     if (d->placement == PLACEMENT_LIST)

@@ -63,6 +63,7 @@ typedef enum {
     END_LOADED,     /* there was no run: the network was read from a file, */
     END_DRAWN,      /* drawn or found in a scan, */
     END_LSYSTEM,    /* or written by an L-system */
+    END_CROWDED,    /* there are more sources or nodes than can be kept: a failure */
 } EndReason;
 const char *end_reason_text(EndReason r);
 

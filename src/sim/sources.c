@@ -77,7 +77,7 @@ static PathsSay paths_ask(const Simulation *s, Vec2 p)
 
 static bool clear_of_sources(const Simulation *s, Vec2 p)
 {
-    return !grid_any_within(&s->grid, s->place, p, s->def.birth_distance_sources * s->blade->unit);
+    return !(s->def.birth_distance_sources > 0.0) || !grid_any_within(&s->grid, s->place, p, s->def.birth_distance_sources * s->blade->unit);
 }
 
 static bool vacant(const Simulation *s, Vec2 p)
@@ -145,7 +145,7 @@ static void throw_darts(Simulation *s)
     s->dart_carry -= (double)n;
     s->counts.darts += n;
     paths_update(s);
-    for (uint64_t i = 0; i < n; i += VOLLEY)
+    for (uint64_t i = 0; i < n && s->n_sources < MOST_SOURCES; i += VOLLEY)
         throw_volley(s, i, (uint32_t)MIN(n - i, VOLLEY));
 }
 
@@ -281,7 +281,7 @@ static gboolean prepare_margin(Simulation *s, GError **error)
     Scatter set;
     scatter_init(&set, box, s->def.birth_distance_sources);
     s->counts.darts = (uint64_t)count;
-    for (uint64_t i = 0; i < s->counts.darts; i++) {
+    for (uint64_t i = 0; i < s->counts.darts && set.n < MOST_SOURCES; i++) {
         double u[2];
         random_pair(s->def.seed, RANDOM_MARGIN, 0, i, u);
         Vec2 p = vec2(box.x0 + u[0] * (box.x1 - box.x0), box.y0 + u[1] * (box.y1 - box.y0));
@@ -292,7 +292,11 @@ static gboolean prepare_margin(Simulation *s, GError **error)
     g_free(set.next);
     s->waiting = set.item;
     s->n_waiting = set.n;
-    return TRUE;
+    if (set.n >= MOST_SOURCES)
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "sources.density = %g makes more than the %d sources that can be kept; it must be lower, or sources.birth_distance_sources = %g higher",
+                    s->def.density, MOST_SOURCES, s->def.birth_distance_sources);
+    return set.n < MOST_SOURCES;
 }
 
 /* Whether a listed source lies in the blade in the end; one right on the margin may be off it by rounding, or by the flatness of a curve,
@@ -309,6 +313,11 @@ static bool in_reach(const Simulation *s, Vec2 p)
 static gboolean prepare_list(Simulation *s, GError **error)
 {
     s->n_waiting = s->def.n_list;
+    if (s->n_waiting >= MOST_SOURCES) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE, "sources.file holds %u sources; fewer than %d can be kept", s->n_waiting, MOST_SOURCES);
+        s->n_waiting = 0;
+        return FALSE;
+    }
     s->waiting = g_memdup2(s->def.list, sizeof(ListedSource) * s->def.n_list);
     for (uint32_t i = 0; i < s->n_waiting; i++) {
         if (in_reach(s, s->waiting[i].pos))

@@ -116,6 +116,9 @@ typedef struct {
     Quadtree pending;  /* places of those that will come */
 } Given;
 
+/* What is kept at most: about 1 GB of sources, 20 GB of nodes. */
+enum { MOST_SOURCES = 10000000, MOST_NODES = 1 << 28 };
+
 struct Simulation {
     SimulationDef def;
     Blade *blade;

@@ -559,6 +559,8 @@ static void test_found(void)
         {"growth.final_length=40", "growth.kind=nonuniform", "growth.rate_y=0,0.03; 0.4,-0.3"},    /* a blade that shrank to nothing */
         {"growth.initial_length=20", "growth.kind=nonuniform", "growth.steps=1000000", "growth.rate_x=0,9"}, /* and one beyond all bounds */
         {"growth.initial_length=20", "growth.kind=none", "texture.size=16384", "texture.maps=none", "export.veins_image=no"}, /* 36 GiB of maps */
+        {"growth.initial_length=1000", "growth.final_length=1000", "sources.density=99", "sources.birth_distance_sources=0", "veins.pattern=open"}, /* memory */
+        {"growth.initial_length=400", "growth.final_length=400", "sources.density=30", "sources.birth_distance_sources=0", "veins.pattern=open"}, /* likewise, at length */
     };
     Trial t = {.folder = g_dir_make_tmp("venation-extremes-XXXXXX", NULL)};
     for (guint i = 0; i < G_N_ELEMENTS(found); i++) {
