@@ -15,6 +15,7 @@ void sweep_axis_clear(SweepAxis *axis)
         g_free(axis->label[i]);
     for (uint32_t i = 0; i < axis->fields; i++)
         g_free(axis->field[i].key);
+    g_free(axis->digit);
     g_free(axis->cell);
     g_free(axis->label);
     g_free(axis->field);

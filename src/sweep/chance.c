@@ -9,24 +9,38 @@ enum { STREAM_SWEEP = RANDOM_SWEEP, STREAM_SWEEP_DIGITS = RANDOM_SWEEP + 1 };
 
 static const double ln2 = 0.693147180559945309417;
 
-/* Halton's sequence (1960) in a prime base, each digit sent through a random line a d + c modulo the base (Matoušek 1998): the points fill
- * the interval as evenly, but neighbouring bases lose their likeness, and the seed matters. Digits without end are random too, as in
- * Owen's (2017) randomised Halton. */
-static double halton(uint64_t seed, uint32_t base, uint64_t index)
+/* Halton's sequence (1960) in a prime base, the digits of each place sent through a random permutation of their own (Owen 2017): the points
+ * fill the interval as evenly, but the sequences of two bases are not alike any more, and the seed matters. Places beyond the last digit of
+ * the index are permuted too. */
+void sweep_seat_digits(const Sweep *s, SweepAxis *axis)
 {
-    double x = 0.0, unit = 1.0 / (double)base;
-    for (uint32_t k = 0; unit > 0x1p-55; k++, unit /= (double)base, index /= base) {
-        RandomBlock r = random_block(seed, STREAM_SWEEP_DIGITS, base, k);
-        uint32_t a = 1 + r.w[0] % (base - 1), c = r.w[1] % base, digit = (uint32_t)(index % base);
-        x += unit * (double)(((uint64_t)a * digit + c) % base);
+    double unit = 1.0;
+    for (axis->places = 0; unit > 0x1p-55; axis->places++)
+        unit /= (double)axis->base;
+    axis->digit = g_new(uint16_t, (gsize)axis->places * axis->base);
+    for (uint32_t k = 0; k < axis->places; k++) {
+        uint16_t *digit = axis->digit + (gsize)k * axis->base;
+        for (uint32_t i = 0; i < axis->base; i++) { /* Durstenfeld 1964, from the front */
+            RandomBlock r = random_block(s->sample_seed, STREAM_SWEEP_DIGITS, axis->base, (uint64_t)k << 32 | i);
+            uint32_t j = r.w[0] % (i + 1);
+            digit[i] = digit[j];
+            digit[j] = (uint16_t)i;
+        }
     }
+}
+
+static double halton(const SweepAxis *axis, uint64_t index)
+{
+    double x = 0.0, unit = 1.0 / (double)axis->base;
+    for (uint32_t k = 0; k < axis->places; k++, unit /= (double)axis->base, index /= axis->base)
+        x += unit * (double)axis->digit[k * axis->base + index % axis->base];
     return MIN(x, 1.0 - 0x1p-53);
 }
 
 double sweep_chance(const Sweep *s, const SweepAxis *axis, uint64_t index)
 {
     if (s->halton)
-        return halton(s->sample_seed, axis->base, index);
+        return halton(axis, index);
     double u[2];
     random_pair(s->sample_seed, STREAM_SWEEP, axis->key, index, u);
     return u[0];

@@ -41,6 +41,8 @@ typedef struct {
     double low, high, step;
     int digits;
     uint32_t key, base; /* of the chance: random's by the key's name, Halton's prime */
+    uint16_t *digit;    /* of Halton's sequence: what a digit becomes, [place * base + digit] */
+    uint32_t places;
     unsigned line;
 } SweepAxis;
 
@@ -102,6 +104,7 @@ char *sweep_axis_draw_text(const SweepAxis *axis, double u);
 
 /* Chance: in [0, 1), for an axis and a variant. */
 double sweep_chance(const Sweep *s, const SweepAxis *axis, uint64_t index);
+void sweep_seat_digits(const Sweep *s, SweepAxis *axis); /* once, for Halton's sequence */
 
 /* The number below which a normal variable stays with probability u. */
 double sweep_normal(double u);

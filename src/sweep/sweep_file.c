@@ -297,6 +297,8 @@ static void seat_chance(Sweep *s)
             axis->key = (axis->key ^ (unsigned char)*c) * 0x01000193u;
         if (axis->kind != AXIS_EACH && axis->levels != 1 && (s->mode == SWEEP_SAMPLE || axis->drawn || !axis->levels))
             axis->base = prime = next_prime(prime);
+        if (axis->base && s->halton)
+            sweep_seat_digits(s, axis);
     }
 }
 
