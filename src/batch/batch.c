@@ -1,15 +1,13 @@
 /* Leaves side by side: each worker takes the next variant of this part that is not there yet, grows it with its share of the processors and moves it to its
- * place. */
+ * place. What another run has in hand comes last, if it still isn't there then: that run may have been killed, on a machine we can't see. */
 #include "batch/batch.h"
 
-#include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <string.h>
 
 #include "batch/labels.h"
 #include "batch/private.h"
-#include "export/export.h"
 #include "lib/fault.h"
 #include "lib/picture.h"
 
@@ -22,6 +20,8 @@ typedef struct {
     GMutex lock; /* over all below */
     GCond ended;
     uint64_t next;
+    GArray *postponed; /* uint64_t, in hand of another run when their turn came */
+    guint resumed;     /* how many of them were taken up again */
     unsigned running;
     bool stop;
     GError *error; /* of the machine, the first */
@@ -32,97 +32,6 @@ typedef struct {
     Batch *batch;
     double part; /* of the leaf at hand that is done */
 } Worker;
-
-/* ---- files ---- */
-
-static gboolean fail(GError **error, const char *what, const char *path)
-{
-    int code = errno;
-    char *name = g_filename_display_name(path);
-    g_set_error(error, G_FILE_ERROR, g_file_error_from_errno(code), "%s: %s: %s", name, what, g_strerror(code));
-    g_free(name);
-    return FALSE;
-}
-
-void batch_remove(const char *path)
-{
-    GDir *dir = g_dir_open(path, 0, NULL);
-    const char *name;
-    while (dir && (name = g_dir_read_name(dir))) {
-        char *child = g_build_filename(path, name, NULL);
-        if (g_unlink(child) != 0)
-            batch_remove(child);
-        g_free(child);
-    }
-    if (dir)
-        g_dir_close(dir);
-    g_rmdir(path);
-}
-
-static gboolean make_parent(const char *path, GError **error)
-{
-    char *parent = g_path_get_dirname(path);
-    gboolean ok = g_mkdir_with_parents(parent, 0777) == 0 || fail(error, "can't make the folder", parent);
-    g_free(parent);
-    return ok;
-}
-
-/* Gives the folder its name, at once. One that is there already is of other parameters and goes; unless another run has just finished the same variant, which is
- * as good as ours. */
-static gboolean move_folder(const char *from, const char *to, GError **error)
-{
-    if (!make_parent(to, error))
-        return FALSE;
-    char *away = g_strconcat(from, ".old", NULL);
-    gboolean ok = g_rename(from, to) == 0;
-    if (!ok && (errno == ENOTEMPTY || errno == EEXIST) && g_rename(to, away) == 0) {
-        ok = g_rename(from, to) == 0;
-        batch_remove(away);
-    }
-    ok = ok || ((errno == ENOTEMPTY || errno == EEXIST) && g_file_test(to, G_FILE_TEST_IS_DIR)) || fail(error, "can't write", to);
-    g_free(away);
-    return ok;
-}
-
-static void measure(const char *folder, uint32_t *files, uint64_t *bytes)
-{
-    GDir *dir = g_dir_open(folder, 0, NULL);
-    const char *name;
-    while (dir && (name = g_dir_read_name(dir))) {
-        char *path = g_build_filename(folder, name, NULL);
-        GStatBuf info;
-        if (g_stat(path, &info) == 0) {
-            *files += 1;
-            *bytes += (uint64_t)info.st_size;
-        }
-        g_free(path);
-    }
-    if (dir)
-        g_dir_close(dir);
-}
-
-uint64_t batch_bytes(const BatchDef *def, uint64_t index)
-{
-    SweepVariant v;
-    uint32_t files = 0;
-    uint64_t bytes = 0;
-    sweep_variant(def->sweep, index, &v);
-    char *relative = row_folder(def->sweep, &v), *folder = g_build_filename(def->out, relative, NULL);
-    measure(folder, &files, &bytes);
-    g_free(relative);
-    g_free(folder);
-    sweep_variant_clear(&v);
-    return bytes;
-}
-
-static gboolean write_row(const char *row, const char *folder, const char *name, GError **error)
-{
-    char *path = g_build_filename(folder, name, NULL), *line = g_strconcat(row, "\n", NULL);
-    gboolean ok = export_text(line, strlen(line), path, error);
-    g_free(line);
-    g_free(path);
-    return ok;
-}
 
 /* ---- one variant ---- */
 
@@ -158,6 +67,18 @@ static void task_clear(Task *t)
     g_free(t->made);
     g_free(t->folder);
     g_free(t->failed);
+}
+
+uint64_t batch_bytes(const BatchDef *def, uint64_t index)
+{
+    SweepVariant v;
+    sweep_variant(def->sweep, index, &v);
+    char *relative = row_folder(def->sweep, &v), *folder = g_build_filename(def->out, relative, NULL);
+    uint64_t bytes = batch_folder_bytes(folder);
+    g_free(relative);
+    g_free(folder);
+    sweep_variant_clear(&v);
+    return bytes;
 }
 
 /* What became of it in an earlier run, if its parameters were the same. */
@@ -199,14 +120,19 @@ static gboolean picture(const VenLeaf *leaf, const Task *t, GError **error)
 /* The row comes last, and then the folder moves. */
 static gboolean finish(const VenLeaf *leaf, const Task *t, GError **error)
 {
-    uint32_t files = 0;
-    uint64_t bytes = 0;
-    measure(t->made, &files, &bytes);
-    char *row = row_grown(t->def->sweep, &t->variant, t->key, leaf, files, bytes);
-    gboolean ok = write_row(row, t->made, "sweep.json", error) && move_folder(t->made, t->folder, error);
+    FolderSum sum;
+    if (!batch_sum_folder(t->made, &sum, error))
+        return FALSE;
+    char *row = row_grown(t->def->sweep, &t->variant, t->key, leaf, &sum), *path = g_build_filename(t->made, "sweep.json", NULL);
+    gboolean ok = batch_write_row(row, path, error);
+    if (ok && outcome_so_far(t) == ROW_GROWN) /* another run was faster, and its leaf is the same */
+        batch_remove(t->made);
+    else
+        ok = ok && batch_move_folder(t->made, t->folder, error);
     if (ok)
         g_unlink(t->failed); /* of other parameters, if there is one */
     g_free(row);
+    g_free(path);
     return ok;
 }
 
@@ -228,11 +154,15 @@ static gboolean on_step(const VenProgress *now, gpointer user)
     return go_on;
 }
 
-/* Grows and writes; FALSE with an error, and *reading tells whether it came while input was read. */
+/* Grows and writes; FALSE with an error, and *reading tells whether it came while input was read. The folder is there from the beginning, so that other
+ * runs see what is in hand. */
 static gboolean grow(const Task *t, Worker *w, gboolean *reading, GError **error)
 {
     VenParams params = {t->params};
     VenOptions how = {.threads = w->batch->leaf_threads, .progress = on_step, .user = w};
+    *reading = FALSE;
+    if (!batch_make_folder(t->made, error))
+        return FALSE;
     *reading = TRUE;
     VenLeaf *leaf = ven_grow(&params, t->variant.seed, &how, error);
     if (!leaf)
@@ -246,41 +176,38 @@ static gboolean grow(const Task *t, Worker *w, gboolean *reading, GError **error
 /* A variant that can't be: its row is kept apart, and a leaf of other parameters in its place goes. */
 static gboolean keep_failure(const Task *t, const GError *failure, GError **error)
 {
-    char *row = row_failure(t->def->sweep, &t->variant, t->key, failure), *name = g_path_get_basename(t->failed), *dir = g_path_get_dirname(t->failed);
-    gboolean ok = make_parent(t->failed, error) && write_row(row, dir, name, error);
+    char *row = row_failure(t->def->sweep, &t->variant, t->key, failure);
+    gboolean ok = batch_write_row(row, t->failed, error);
     if (ok)
         batch_remove(t->folder);
     g_free(row);
-    g_free(name);
-    g_free(dir);
     return ok;
 }
 
-/* Errors name files in their places, not in the hidden folder. */
-static void name_plainly(const Task *t, GError *error)
-{
-    char **parts = g_strsplit(error->message, t->made, -1);
-    g_free(error->message);
-    error->message = g_strjoinv(t->folder, parts);
-    g_strfreev(parts);
-}
+/* What became of a variant in this run. */
+typedef struct {
+    RowOutcome outcome;
+    bool found;     /* it was there */
+    bool postponed; /* another run has it in hand */
+} Made;
 
-/* Makes what is missing of one variant. TRUE unless the machine failed, or the run was stopped. */
-static gboolean make(Worker *w, uint64_t index, RowOutcome *outcome, bool *found, GError **error)
+/* Makes what is missing of one variant; `again`: even if another run has it in hand. TRUE unless the machine failed, or the run was stopped. */
+static gboolean make(Worker *w, uint64_t index, bool again, Made *out, GError **error)
 {
     Task t;
     GError *failure = NULL;
     gboolean reading = TRUE, ok = TRUE, begun = task_begin(&t, w->batch, index, &failure);
-    *outcome = outcome_so_far(&t);
-    *found = *outcome != ROW_MISSING;
-    if (*found) {
+    *out = (Made){.outcome = outcome_so_far(&t)};
+    out->found = out->outcome != ROW_MISSING;
+    out->postponed = !out->found && !again && batch_in_hand(t.def, t.variant.name);
+    if (out->found || out->postponed) {
         g_clear_error(&failure);
     } else if (begun && grow(&t, w, &reading, &failure)) {
-        *outcome = ROW_GROWN;
+        out->outcome = ROW_GROWN;
     } else {
         batch_remove(t.made);
-        name_plainly(&t, failure);
-        *outcome = ROW_FAILED;
+        batch_name_plainly(failure, t.made, t.folder);
+        out->outcome = ROW_FAILED;
         ok = fault_is_input(failure, reading) && keep_failure(&t, failure, error);
         if (!ok && !(error && *error))
             g_propagate_error(error, g_steal_pointer(&failure));
@@ -292,26 +219,35 @@ static gboolean make(Worker *w, uint64_t index, RowOutcome *outcome, bool *found
 
 /* ---- all of them ---- */
 
-static bool take_next(Batch *b, uint64_t *index)
+static bool take_next(Batch *b, uint64_t *index, bool *again)
 {
-    bool more = !b->stop && b->next < sweep_count(b->def->sweep);
-    *index = b->next;
-    if (more) {
+    bool first = b->next < sweep_count(b->def->sweep);
+    *again = !first && b->resumed < b->postponed->len;
+    if (b->stop || !(first || *again))
+        return false;
+    if (first) {
+        *index = b->next;
         b->next += b->def->shards;
-        b->state.growing++;
+    } else {
+        *index = g_array_index(b->postponed, uint64_t, b->resumed++);
     }
-    return more;
+    b->state.growing++;
+    return true;
 }
 
-static void note(Batch *b, Worker *w, gboolean ok, RowOutcome outcome, bool found, GError *error)
+static void note(Batch *b, Worker *w, gboolean ok, uint64_t index, const Made *made, GError *error)
 {
     b->state.growing--;
     b->state.part -= w->part;
     w->part = 0.0;
+    if (ok && made->postponed) {
+        g_array_append_val(b->postponed, index);
+        return;
+    }
     if (ok) {
-        b->state.found += found && outcome == ROW_GROWN;
-        b->state.grown += !found && outcome == ROW_GROWN;
-        b->state.failed += outcome == ROW_FAILED;
+        b->state.found += made->found && made->outcome == ROW_GROWN;
+        b->state.grown += !made->found && made->outcome == ROW_GROWN;
+        b->state.failed += made->outcome == ROW_FAILED;
         return;
     }
     b->stop = true;
@@ -326,15 +262,15 @@ static gpointer work(gpointer user)
     Batch *b = user;
     Worker w = {.batch = b};
     uint64_t index;
+    bool again;
     g_mutex_lock(&b->lock);
-    while (take_next(b, &index)) {
-        RowOutcome outcome;
-        bool found;
+    while (take_next(b, &index, &again)) {
+        Made made;
         GError *error = NULL;
         g_mutex_unlock(&b->lock);
-        gboolean ok = make(&w, index, &outcome, &found, &error);
+        gboolean ok = make(&w, index, again, &made, &error);
         g_mutex_lock(&b->lock);
-        note(b, &w, ok, outcome, found, error);
+        note(b, &w, ok, index, &made, error);
     }
     b->running--;
     g_cond_signal(&b->ended);
@@ -359,7 +295,7 @@ gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state
 {
     uint64_t count = sweep_count(def->sweep), mine = count > def->shard ? (count - def->shard - 1) / def->shards + 1 : 0;
     unsigned threads = def->threads ? def->threads : g_get_num_processors();
-    Batch b = {.def = def, .keys = keys_new(def), .next = def->shard, .state.total = mine};
+    Batch b = {.def = def, .keys = keys_new(def), .next = def->shard, .state.total = mine, .postponed = g_array_new(FALSE, FALSE, sizeof(uint64_t))};
     b.workers = (unsigned)MIN((uint64_t)threads, MAX(mine, 1));
     b.leaf_threads = MAX(threads / b.workers, 1);
     b.running = b.workers;
@@ -377,6 +313,7 @@ gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state
     g_mutex_clear(&b.lock);
     g_cond_clear(&b.ended);
     keys_free(b.keys);
+    g_array_free(b.postponed, TRUE);
     *end = b.state;
     if (b.stop && !b.error)
         g_set_error(&b.error, G_IO_ERROR, G_IO_ERROR_CANCELLED, "stopped");

@@ -3,19 +3,21 @@
 #ifndef BATCH_BATCH_H
 #define BATCH_BATCH_H
 
+#include "batch/watch.h"
 #include "sweep/sweep.h"
 
 typedef struct {
     const Sweep *sweep;
     const Params *params;     /* the sweep's, or a copy with what was set over it */
     const char *out;          /* folder, which is there */
-    const char *staging;      /* hidden folder on the same file system; not needed to collect */
+    const char *staging;      /* hidden folder on the same file system; may be NULL to collect, but then a killed run leaves parts of files beside them */
     unsigned threads;         /* 0: all processors */
     uint32_t shard, shards;   /* grows variants whose index is `shard` (from 0) modulo `shards`; 0, 1: all of them */
     gboolean models;          /* shape the leaves, too */
     gboolean labels;          /* write the annotations that a dataset is made of (dataset.h) */
     uint32_t picture;         /* longer side of the picture for the sheet, pixels; 0: none */
     gboolean specimen;        /* the picture is of the leaf as a scanner sees it, not of its veins alone */
+    Watch watch;              /* of collecting */
 } BatchDef;
 
 typedef struct {
@@ -33,6 +35,9 @@ gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state
 /* What the files of a variant that is there take, bytes; 0 if it isn't. */
 uint64_t batch_bytes(const BatchDef *def, uint64_t index);
 
+/* Makes an error name files in their places, not in the hidden folder. */
+void batch_name_plainly(GError *error, const char *hidden, const char *folder);
+
 /* Removes a folder with all in it. */
 void batch_remove(const char *folder);
 
@@ -42,11 +47,22 @@ typedef struct {
     uint64_t stale; /* of the missing ones: there, but of other parameters */
 } BatchCount;
 
-/* Counts alone. */
-void batch_count(const BatchDef *def, BatchCount *count);
+/* Counts alone. FALSE with an error if it was stopped. */
+gboolean batch_count(const BatchDef *def, BatchCount *count, GError **error);
 
-/* Writes <out>/manifest.jsonl and manifest.csv from all rows, in order, each beside its place and renamed. Memory does not go with the number of variants.
+/* Writes <out>/manifest.jsonl and manifest.csv from all rows, in order, each in `staging`, and moved. Memory does not go with the number of variants.
  * Rows of other parameters are written as missing. */
 gboolean manifest_write(const BatchDef *def, BatchCount *count, GError **error);
+
+/* Leaves and rows of failure in the output folder that are of no variant: of a sweep file that was other, or larger. And the hidden folders of other
+ * runs, which are at work or were killed. Clear them with batch_names_clear. */
+enum { BATCH_TOLD = 3 };
+typedef struct {
+    uint64_t count;
+    char *first[BATCH_TOLD]; /* relative to `out`, the first ones in order; NULL: there are no more */
+} BatchNames;
+void batch_unnamed(const BatchDef *def, BatchNames *out);
+void batch_hidden(const BatchDef *def, BatchNames *out);
+void batch_names_clear(BatchNames *n);
 
 #endif

@@ -1,6 +1,5 @@
 #include "batch/dataset.h"
 
-#include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <stdio.h>
@@ -29,6 +28,7 @@ typedef struct {
     char *root;            /* the new data set while it is made */
     uint64_t n[SPLITS];
     uint64_t annotations;  /* numbers given so far */
+    int rounds;            /* over all leaves, so far */
 } Dataset;
 
 gboolean dataset_params(Params *p, const char *origin, GError **error)
@@ -65,15 +65,6 @@ static int split_of(const Dataset *d, const SweepVariant *v)
 
 /* ---- files ---- */
 
-static gboolean make_folder(const char *path, GError **error)
-{
-    if (g_mkdir_with_parents(path, 0777) == 0)
-        return TRUE;
-    int code = errno;
-    g_set_error(error, G_FILE_ERROR, g_file_error_from_errno(code), "can't make the folder '%s': %s", path, g_strerror(code));
-    return FALSE;
-}
-
 static gboolean copy(const char *from, const char *to, GError **error)
 {
     GFile *source = g_file_new_for_path(from), *target = g_file_new_for_path(to);
@@ -101,11 +92,11 @@ static gboolean make_folders(const Dataset *d, GError **error)
     gboolean ok = TRUE;
     for (gsize i = 0; i < G_N_ELEMENTS(part) * SPLITS && ok; i++) {
         char *path = g_strdup_printf("%s/%s/%s", d->root, part[i / SPLITS].folder, split_name[i % SPLITS]);
-        ok = make_folder(path, error);
+        ok = batch_make_folder(path, error);
         g_free(path);
     }
     char *path = g_build_filename(d->root, "annotations", NULL);
-    ok = ok && make_folder(path, error);
+    ok = ok && batch_make_folder(path, error);
     g_free(path);
     return ok;
 }
@@ -115,14 +106,18 @@ static gboolean make_folders(const Dataset *d, GError **error)
 /* Calls `each` for every leaf that is there, in order. */
 static gboolean each_leaf(Dataset *d, int split, gboolean (*each)(Dataset *d, const Row *row, gpointer user, GError **error), gpointer user, GError **error)
 {
+    enum { ROUNDS = 1 + 2 * SPLITS };
+    uint64_t count = sweep_count(d->def->sweep);
     gboolean ok = TRUE;
-    for (uint64_t i = 0; i < sweep_count(d->def->sweep) && ok; i++) {
+    for (uint64_t i = 0; i < count && ok; i++) {
         Row row;
         row_read(d->def->sweep, d->def->out, i, &row);
         if (row.outcome == ROW_GROWN && (split < 0 || split_of(d, &row.variant) == split))
             ok = each(d, &row, user, error);
         row_clear(&row);
+        ok = ok && watch_tick(&d->def->watch, (d->rounds + (double)(i + 1) / (double)count) / ROUNDS, error);
     }
+    d->rounds++;
     return ok;
 }
 
@@ -236,15 +231,9 @@ static gboolean write_card(const Dataset *d, GError **error)
 
 static gboolean put_in_place(const Dataset *d, GError **error)
 {
-    char *target = g_build_filename(d->def->out, "dataset", NULL), *old = g_strconcat(d->root, ".old", NULL);
-    gboolean ok = (g_rename(target, old) == 0 || errno == ENOENT) && g_rename(d->root, target) == 0;
-    if (!ok) {
-        int code = errno;
-        g_set_error(error, G_FILE_ERROR, g_file_error_from_errno(code), "%s: can't write: %s", target, g_strerror(code));
-    }
-    batch_remove(old);
+    char *target = g_build_filename(d->def->out, "dataset", NULL);
+    gboolean ok = batch_move_folder(d->root, target, error);
     g_free(target);
-    g_free(old);
     return ok;
 }
 

@@ -1,4 +1,5 @@
 /* All rows in one file, as JSON lines and as a table. */
+#include <errno.h>
 #include <json-glib/json-glib.h>
 #include <string.h>
 
@@ -92,13 +93,14 @@ static void add_row(Manifest *m, const char *json)
     sink_drain(m->table);
 }
 
-static void fill(Manifest *m, BatchCount *count)
+static gboolean fill(Manifest *m, BatchCount *count, GError **error)
 {
     const Sweep *s = m->def->sweep;
+    gboolean ok = TRUE;
     *count = (BatchCount){0};
     if (m->table)
         each_column(s, add_heading, m->table->text, NULL);
-    for (uint64_t i = 0; i < sweep_count(s); i++) {
+    for (uint64_t i = 0; i < sweep_count(s) && ok; i++) {
         Row row;
         row_read(s, m->def->out, i, &row);
         bool there = row.outcome != ROW_MISSING && is_current(m, &row);
@@ -111,28 +113,41 @@ static void fill(Manifest *m, BatchCount *count)
         count->stale += !there && row.outcome != ROW_MISSING;
         g_free(missing);
         row_clear(&row);
+        ok = watch_tick(&m->def->watch, (double)(i + 1) / (double)sweep_count(s), error);
     }
+    return ok;
 }
 
-void batch_count(const BatchDef *def, BatchCount *count)
+gboolean batch_count(const BatchDef *def, BatchCount *count, GError **error)
 {
     Manifest m = {.def = def, .keys = keys_new(def)};
-    fill(&m, count);
+    gboolean ok = fill(&m, count, error);
     keys_free(m.keys);
+    return ok;
+}
+
+/* A file that isn't whole goes. */
+static gboolean end(Sink *s, gboolean ok, GError **error)
+{
+    if (!s)
+        return FALSE;
+    if (!ok)
+        s->error = ECANCELED;
+    return sink_close(s, ok ? error : NULL) && ok;
 }
 
 gboolean manifest_write(const BatchDef *def, BatchCount *count, GError **error)
 {
-    char *lines = g_build_filename(def->out, "manifest.jsonl", NULL), *table = g_build_filename(def->out, "manifest.csv", NULL);
+    const char *in = def->staging ? def->staging : def->out;
+    char *lines = g_build_filename(in, "manifest.jsonl", NULL), *table = g_build_filename(in, "manifest.csv", NULL);
     Manifest m = {.def = def, .keys = keys_new(def)};
-    gboolean ok = FALSE;
-    if ((m.lines = sink_open(lines, error)) != NULL) {
-        if ((m.table = sink_open(table, error)) != NULL)
-            fill(&m, count);
-        ok = sink_close(m.lines, m.table ? error : NULL) && m.table;
-        if (m.table)
-            ok = sink_close(m.table, ok ? error : NULL) && ok;
-    }
+    m.lines = sink_open(lines, error);
+    m.table = m.lines ? sink_open(table, error) : NULL;
+    gboolean ok = m.table && fill(&m, count, error);
+    ok = end(m.lines, ok, error);
+    ok = end(m.table, ok, error);
+    if (ok && def->staging)
+        ok = batch_place_file(in, def->out, "manifest.jsonl", error) && batch_place_file(in, def->out, "manifest.csv", error);
     keys_free(m.keys);
     g_free(lines);
     g_free(table);

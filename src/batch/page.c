@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "batch/page_private.h"
+#include "batch/private.h"
 #include "batch/sheet_label.h"
 #include "image/staged.h"
 #include "page-resources.h"
@@ -98,9 +99,9 @@ static void put_sweep(const Sweep *s, const Params *params, const char *title, u
 
 /* ---- files ---- */
 
-static gboolean write_text(const char *out, const char *name, const GString *text, GError **error)
+static gboolean write_text(const char *out, const PageDef *def, const char *name, const GString *text, GError **error)
 {
-    char *path = g_build_filename(out, name, NULL);
+    char *path = g_build_filename(def->staging ? def->staging : out, name, NULL);
     Staged file;
     gboolean ok = staged_open(&file, path, error);
     if (ok && fwrite(text->str, 1, text->len, file.file) != text->len) {
@@ -108,12 +109,12 @@ static gboolean write_text(const char *out, const char *name, const GString *tex
         staged_abort(&file);
         ok = FALSE;
     }
-    ok = ok && staged_commit(&file, error);
+    ok = ok && staged_commit(&file, error) && (!def->staging || batch_place_file(def->staging, out, name, error));
     g_free(path);
     return ok;
 }
 
-static gboolean write_chunks(const Sweep *s, const char *out, uint64_t chunks, GError **error)
+static gboolean write_chunks(const Sweep *s, const char *out, uint64_t chunks, const PageDef *def, GError **error)
 {
     GString *text = g_string_new(NULL);
     gboolean ok = TRUE;
@@ -121,7 +122,7 @@ static gboolean write_chunks(const Sweep *s, const char *out, uint64_t chunks, G
         char *name = g_strdup_printf("page/%" G_GUINT64_FORMAT ".js", c);
         g_string_truncate(text, 0);
         page_rows(s, out, c * PAGE_CHUNK, MIN(PAGE_CHUNK, sweep_count(s) - c * PAGE_CHUNK), text);
-        ok = write_text(out, name, text, error);
+        ok = write_text(out, def, name, text, error) && watch_tick(&def->watch, (double)(c + 1) / (double)chunks, error);
         g_free(name);
     }
     g_string_free(text, TRUE);
@@ -163,26 +164,33 @@ static void add_resource(GString *text, const char *name, const char *title)
     g_free(path);
 }
 
-gboolean page_write(const Sweep *s, const Params *params, const char *out, const char *title, GError **error)
+/* For the rows. */
+static gboolean make_folder(const char *in, GError **error)
+{
+    char *folder = g_build_filename(in, "page", NULL);
+    gboolean ok = batch_make_folder(folder, error);
+    g_free(folder);
+    return ok;
+}
+
+gboolean page_write(const Sweep *s, const Params *params, const char *out, const PageDef *def, GError **error)
 {
     uint64_t chunks = (sweep_count(s) + PAGE_CHUNK - 1) / PAGE_CHUNK;
-    char *folder = g_build_filename(out, "page", NULL), *own = g_path_get_basename(sweep_path(s));
+    char *own = g_path_get_basename(sweep_path(s));
     GString *text = g_string_new(NULL);
     if (g_str_has_suffix(own, ".ini"))
         own[strlen(own) - 4] = '\0';
-    gboolean ok = g_mkdir_with_parents(folder, 0777) == 0;
-    if (!ok)
-        staged_error(folder, errno, error);
-    ok = ok && write_chunks(s, out, chunks, error);
-    put_sweep(s, params, title ? title : own, chunks, text);
-    ok = ok && write_text(out, "page/sweep.js", text, error);
+    const char *title = def->title ? def->title : own;
+    gboolean ok = make_folder(out, error) && (!def->staging || make_folder(def->staging, error));
+    ok = ok && write_chunks(s, out, chunks, def, error);
+    put_sweep(s, params, title, chunks, text);
+    ok = ok && write_text(out, def, "page/sweep.js", text, error);
     g_string_truncate(text, 0);
-    add_resource(text, "page.html", title ? title : own);
-    ok = ok && write_text(out, "index.html", text, error);
+    add_resource(text, "page.html", title);
+    ok = ok && write_text(out, def, "index.html", text, error);
     if (ok)
         remove_rest(out, chunks);
     g_string_free(text, TRUE);
-    g_free(folder);
     g_free(own);
     return ok;
 }

@@ -3,9 +3,16 @@
 #define BATCH_PAGE_H
 
 #include "batch/rows.h"
+#include "batch/watch.h"
+
+typedef struct {
+    const char *title;   /* NULL: the sweep file's name */
+    const char *staging; /* where files are made; NULL: beside their places */
+    Watch watch;
+} PageDef;
 
 /* Writes <out>/index.html and the data it loads, from the variants' rows. `params` are the sweep's, or a copy with what was set over
  * it, for the command that grows a leaf alone. Memory does not go with the number of variants. */
-gboolean page_write(const Sweep *s, const Params *params, const char *out, const char *title, GError **error);
+gboolean page_write(const Sweep *s, const Params *params, const char *out, const PageDef *def, GError **error);
 
 #endif

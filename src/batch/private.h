@@ -8,12 +8,38 @@
 
 enum { FOLDER_LEAVES = 1000, MOST_IN_ONE = 10000 }; /* variants of a folder; of a sweep whose leaves are all in one */
 
+/* The files in a folder. `sha256` is that of what sha256sum says of them, in order of their names (bytes):
+ *     ls | grep -vx sweep.json | LC_ALL=C sort | xargs sha256sum | sha256sum */
+typedef struct {
+    uint32_t files;
+    uint64_t bytes;
+    char sha256[65];
+} FolderSum;
+gboolean batch_sum_folder(const char *folder, FolderSum *out, GError **error);
+uint64_t batch_folder_bytes(const char *folder);
+
+/* An error of errno, "PATH: WHAT: …". Returns FALSE. */
+gboolean batch_fail(GError **error, const char *what, const char *path);
+gboolean batch_make_folder(const char *path, GError **error);
+
+/* Gives the folder its name, at once; one that is there already, an older one or another run's, makes way. */
+gboolean batch_move_folder(const char *from, const char *to, GError **error);
+
+/* Moves a file of this name, maybe one in a folder that is in both, to its place. */
+gboolean batch_place_file(const char *staging, const char *out, const char *name, GError **error);
+
+/* Writes a row, in a folder that need not be there. */
+gboolean batch_write_row(const char *row, const char *path, GError **error);
+
+/* Whether another run, on this machine or another, has begun with the variant and not ended; a run that was killed on another machine looks so, too. */
+bool batch_in_hand(const BatchDef *def, const char *variant);
+
 /* The variant's place, relative to the output folder: leaves/NAME or leaves/000/NAME; failed/NAME.json. Free it. */
 char *row_folder(const Sweep *s, const SweepVariant *v);
 char *row_failed(const SweepVariant *v);
 
 /* The text of a row, one line without its end. `key` is what the variant depends on (batch_key). Free it. */
-char *row_grown(const Sweep *s, const SweepVariant *v, const char *key, const VenLeaf *leaf, uint32_t files, uint64_t bytes);
+char *row_grown(const Sweep *s, const SweepVariant *v, const char *key, const VenLeaf *leaf, const FolderSum *sum);
 char *row_failure(const Sweep *s, const SweepVariant *v, const char *key, const GError *error);
 char *row_missing(const Sweep *s, const SweepVariant *v);
 

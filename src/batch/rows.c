@@ -97,7 +97,7 @@ static char *end_row(GString *row)
 const char *const *row_counts(void)
 {
     static const char *const name[] = {"nodes",     "edges",       "anastomoses",  "areoles", "veins",        "steps", "sources_reached", "sources_given_up", "end",
-                                       "leaf_length", "blade_area", "vein_length", "vein_density", "widest_vein", "network_hash", "files", "bytes", "key", NULL};
+                                       "leaf_length", "blade_area", "vein_length", "vein_density", "widest_vein", "network_hash", "files", "bytes", "sha256", "key", NULL};
     return name;
 }
 
@@ -144,14 +144,15 @@ static void add_counts(GString *row, const VenLeaf *leaf)
     add_number(row, "widest_vein", widest);
 }
 
-char *row_grown(const Sweep *s, const SweepVariant *v, const char *key, const VenLeaf *leaf, uint32_t files, uint64_t bytes)
+char *row_grown(const Sweep *s, const SweepVariant *v, const char *key, const VenLeaf *leaf, const FolderSum *sum)
 {
     char *folder = row_folder(s, v), *hash = g_strdup_printf("%016" G_GINT64_MODIFIER "x", (guint64)leaf_hash(leaf->net));
     GString *row = begin_row(s, v, "grown", NULL, folder);
     add_counts(row, leaf);
     add_text(row, "network_hash", hash);
-    add_count(row, "files", files);
-    add_count(row, "bytes", bytes);
+    add_count(row, "files", sum->files);
+    add_count(row, "bytes", sum->bytes);
+    add_text(row, "sha256", sum->sha256);
     add_text(row, "key", key);
     g_free(hash);
     g_free(folder);

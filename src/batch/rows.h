@@ -8,7 +8,8 @@
  *
  * A row is one JSON object of plain members, on one line: "index", "variant", "outcome" ("grown", "failed" or "missing"), "error" (text, if failed),
  * "folder" (relative to OUT), then a member for each key of the sweep by its name ("veins.kill_distance", "seed"), numbers as numbers, null where the
- * parameter file's value holds, then counts and hashes. */
+ * parameter file's value holds, then counts and hashes: "network_hash" of the network, "sha256" of the variant's "files" but for the row itself (private.h:
+ * FolderSum), and "key", which tells what it was grown from. */
 #ifndef BATCH_ROWS_H
 #define BATCH_ROWS_H
 

@@ -4,17 +4,18 @@
 #include <glib/gstdio.h>
 #include <string.h>
 
+#include "batch/private.h"
 #include "batch/sheet_label.h"
 #include "batch/sheet_private.h"
 #include "image/staged.h"
 
 enum { DEFAULT_CELL = 320, LEAST_CELL = 32, MOST_CELL = 2048 };
 
-/* "sheet.svg", "sheet-2.svg" … */
+/* "sheet.svg", "sheet-2.svg" …, in a folder or by itself. */
 static char *file_name(const char *out, uint64_t sheet, const char *ending)
 {
     char *base = sheet ? g_strdup_printf("sheet-%" G_GUINT64_FORMAT ".%s", sheet + 1, ending) : g_strdup_printf("sheet.%s", ending);
-    char *path = g_build_filename(out, base, NULL);
+    char *path = out ? g_build_filename(out, base, NULL) : g_strdup(base);
     g_free(base);
     return path;
 }
@@ -75,7 +76,7 @@ static gboolean put_bands(Writer *w, GError **error)
             sheet_draw_line(sheet, line, &w->band);
         else
             w->band.height = sheet_line_height(sheet);
-        ok = ok && put_band(w, error);
+        ok = ok && put_band(w, error) && (!w->png || watch_tick(&sheet->watch, (double)(line + 1) / (double)p->lines, error));
     }
     sheet_draw_foot(sheet, w->failed, w->missing, &w->band);
     return ok && put_band(w, error);
@@ -129,12 +130,22 @@ static gboolean write_files(Writer *w, const char *svg, const char *png, GError 
     return sheet_png_end(w->png, error);
 }
 
+static gboolean move_sheet(const Sheet *sheet, GError **error)
+{
+    char *svg = file_name(NULL, sheet->sheet, "svg"), *png = file_name(NULL, sheet->sheet, "png");
+    gboolean ok = batch_place_file(sheet->staging, sheet->plan->out, svg, error) && batch_place_file(sheet->staging, sheet->plan->out, png, error);
+    g_free(svg);
+    g_free(png);
+    return ok;
+}
+
 static gboolean write_sheet(const Sheet *sheet, GError **error)
 {
     Writer w = {.sheet = sheet, .style = g_string_new(NULL), .band.svg = g_string_new(NULL)};
-    char *svg = file_name(sheet->plan->out, sheet->sheet, "svg"), *png = file_name(sheet->plan->out, sheet->sheet, "png");
+    const char *in = sheet->staging ? sheet->staging : sheet->plan->out;
+    char *svg = file_name(in, sheet->sheet, "svg"), *png = file_name(in, sheet->sheet, "png");
     sheet_style(sheet, w.style);
-    gboolean ok = write_files(&w, svg, png, error);
+    gboolean ok = write_files(&w, svg, png, error) && (!sheet->staging || move_sheet(sheet, error));
     g_string_free(w.style, TRUE);
     g_string_free(w.band.svg, TRUE);
     g_free(svg);
@@ -160,7 +171,7 @@ gboolean sheet_write(const Sweep *s, const char *out, const SheetDef *def, GErro
     char *own = g_path_get_basename(sweep_path(s));
     if (g_str_has_suffix(own, ".ini"))
         own[strlen(own) - 4] = '\0';
-    Sheet sheet = {.plan = sheet_plan_new(s, out, cell), .title = def->title ? def->title : own};
+    Sheet sheet = {.plan = sheet_plan_new(s, out, cell), .title = def->title ? def->title : own, .staging = def->staging, .watch = def->watch};
     sheet_sizes(&sheet);
     gboolean ok = TRUE;
     for (; ok && sheet.sheet < sheet.plan->sheets; sheet.sheet++)

@@ -3,17 +3,19 @@
 #define BATCH_SHEET_H
 
 #include "batch/rows.h"
+#include "batch/watch.h"
 
 enum { SHEET_MOST_CELLS = 600 }; /* of one sheet; larger sweeps have several */
 
 typedef struct {
     uint32_t cell;     /* pixels of a cell's picture in the PNG, longer side */
     const char *title; /* NULL: the sweep file's name */
+    const char *staging; /* where files are made; NULL: beside their places */
+    Watch watch;
 } SheetDef;
 
 /* Writes <out>/sheet.svg and <out>/sheet.png (sheet-2.svg … where one does not hold all) from the variants' rows and pictures. Pictures are inside the
- * SVG; the PNG is the SVG as librsvg draws it. Memory goes with one sheet's cells, not with the sweep. Each file is written beside its place
- * and renamed. */
+ * SVG; the PNG is the SVG as librsvg draws it. Memory goes with one sheet's cells, not with the sweep. Each file appears whole. */
 gboolean sheet_write(const Sweep *s, const char *out, const SheetDef *def, GError **error);
 
 #endif

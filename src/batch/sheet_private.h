@@ -77,7 +77,8 @@ typedef struct {
 typedef struct {
     const SheetPlan *plan;
     SheetSizes size;
-    const char *title;
+    const char *title, *staging;
+    Watch watch;
     uint64_t sheet; /* from 0 */
 } Sheet;
 

@@ -2,15 +2,17 @@
 #include <glib/gstdio.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "batch/batch.h"
 #include "batch/dataset.h"
 #include "batch/page.h"
 #include "batch/sheet.h"
 #include "cli/run.h"
+#include "cli/sweep_trial.h"
 #include "lib/leaf.h"
 
-enum { MOST_THREADS = 1024, MOST_SHARDS = 1000000, MOST_CELL = 2048, TRIAL_SECONDS = 20, MOST_TOLD = 3 };
+enum { MOST_THREADS = 1024, MOST_SHARDS = 1000000, MOST_CELL = 2048, MOST_TOLD = 3 };
 
 typedef struct {
     CommonArgs common;
@@ -32,7 +34,7 @@ static const GOptionEntry options[] = {
     {"validation", 0, 0, G_OPTION_ARG_FILENAME, FIELD(validation), "Part of the data set that is for validation, chosen by seed (default: 0.2)", "PART"},
     {"shard", 0, 0, G_OPTION_ARG_FILENAME, FIELD(shard), "Grow the I-th of N parts only, I from 1; --collect ends the work", "I/N"},
     {"collect", 0, 0, G_OPTION_ARG_NONE, FIELD(collect), "Grow nothing: write manifest, sheet and page of what is there", NULL},
-    {"dry-run", 0, 0, G_OPTION_ARG_NONE, FIELD(dry_run), "List the variants, and estimate size and time by growing one of them for a trial", NULL},
+    {"dry-run", 0, 0, G_OPTION_ARG_NONE, FIELD(dry_run), "List the variants (on a terminal, the first), and estimate size and time by growing one of them for a trial", NULL},
     {"cell", 0, 0, G_OPTION_ARG_FILENAME, FIELD(cell), "Pixels of a leaf on the contact sheet (default: 320; 0: no pictures, sheet and page)", "PX"},
     {"picture", 0, 0, G_OPTION_ARG_FILENAME, FIELD(picture), "What sheet and page show: veins, black on white (the default), or specimen, the leaf in its colours (the default of a data set)",
      "veins|specimen"},
@@ -53,6 +55,7 @@ typedef struct {
     Interrupt *interrupt;
     Progress *progress;
     BatchDef def;
+    const char *phase; /* of collecting, as it is told */
     gint64 begun;
 } Sweeping;
 
@@ -85,6 +88,7 @@ static gboolean check_choice(const Sweeping *w)
 {
     const SweepArgs *a = w->args;
     const char *wrong = a->shard && a->collect                     ? "--collect comes after all shards; it goes without --shard"
+                        : a->collect && a->dry_run                 ? "--collect grows nothing that --dry-run could tell of; it goes without"
                         : a->dataset && (a->write || a->maps)      ? "--dataset writes what a data set needs; it goes without --write and --maps"
                         : a->validation && !a->dataset             ? "--validation goes with --dataset"
                                                                    : NULL;
@@ -220,15 +224,10 @@ static void abandon(gpointer user)
     Sweeping *w = user;
     if (w->output)
         output_discard(w->output);
-    if (!w->args->quiet)
-        fputs("\nvenation: stopped; what is finished stays, and the same command goes on from there\n", stderr);
-}
-
-static char *duration(double seconds)
-{
-    if (seconds < 99.5)
-        return g_strdup_printf("%.0f s", MAX(seconds, 1.0));
-    return seconds < 5970.0 ? g_strdup_printf("%.0f min", seconds / 60.0) : g_strdup_printf("%.1f h", seconds / 3600.0);
+    static const char text[] = "\nvenation: stopped; what is finished stays, and the same command goes on from there\n"; /* below the progress bar */
+    const char *from = w->progress ? text : text + 1;
+    if (!w->args->quiet && write(STDERR_FILENO, from, strlen(from)) < 0)
+        return; /* there is nobody to tell */
 }
 
 static gboolean on_tick(const BatchState *now, gpointer user)
@@ -242,7 +241,7 @@ static gboolean on_tick(const BatchState *now, gpointer user)
     if (now->failed)
         g_string_append_printf(facts, ", %" G_GUINT64_FORMAT " failed", now->failed);
     if (work > 0.1 && seconds > 2.0) {
-        char *time = duration(seconds / work * left);
+        char *time = sweep_duration(seconds / work * left);
         g_string_append_printf(facts, ", about %s left", time);
         g_free(time);
     }
@@ -251,32 +250,58 @@ static gboolean on_tick(const BatchState *now, gpointer user)
     return interrupt_signal(w->interrupt) == 0;
 }
 
+static gboolean on_collect(double part, gpointer user)
+{
+    Sweeping *w = user;
+    progress_part(w->progress, part, w->phase);
+    return interrupt_signal(w->interrupt) == 0;
+}
+
+/* What ended the work too early: a signal, or the error, which is taken. Returns the exit status. */
+static int tell_end(const Sweeping *w, GError *error, const char *state)
+{
+    progress_clear(w->progress);
+    if (!interrupt_signal(w->interrupt))
+        return run_report(error, FALSE);
+    g_clear_error(&error);
+    if (!w->args->quiet)
+        cli_fail(0, "stopped; %s, and the same command goes on from there", state);
+    return EXIT_SIGNAL + interrupt_signal(w->interrupt);
+}
+
 static int grow_all(Sweeping *w, BatchState *end)
 {
     GError *error = NULL;
     interrupt_polite(w->interrupt);
     gboolean good = batch_run(&w->def, on_tick, w, end, &error);
     interrupt_hold(w->interrupt);
-    progress_clear(w->progress);
     if (good)
         return 0;
-    if (!interrupt_signal(w->interrupt))
-        return run_report(error, FALSE);
-    g_clear_error(&error);
-    if (!w->args->quiet)
-        cli_fail(0, "stopped; %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT " are there, and the same command goes on from there",
-                 end->found + end->grown + end->failed, end->total);
-    return EXIT_SIGNAL + interrupt_signal(w->interrupt);
+    char *state = g_strdup_printf("%" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT " are there", end->found + end->grown + end->failed, end->total);
+    int status = tell_end(w, error, state);
+    g_free(state);
+    return status;
 }
 
-static gboolean collect(Sweeping *w, BatchCount *count, GError **error)
+/* A signal stops it between two leaves; each file appears whole. */
+static int collect(Sweeping *w, BatchCount *count)
 {
-    progress_say(w->progress, ": collecting");
-    const SheetDef sheet = {.cell = (uint32_t)w->cell};
-    gboolean ok = manifest_write(&w->def, count, error) && (!w->args->dataset || dataset_write(&w->def, w->validation, error)) &&
-                  (!w->cell || (sheet_write(w->sweep, w->dir, &sheet, error) && page_write(w->sweep, w->params, w->dir, w->name, error)));
+    GError *error = NULL;
+    const SheetDef sheet = {.cell = (uint32_t)w->cell, .staging = w->def.staging, .watch = w->def.watch};
+    const PageDef page = {.title = w->name, .staging = w->def.staging, .watch = w->def.watch};
+    w->phase = "  collecting: manifest";
+    gboolean ok = manifest_write(&w->def, count, &error);
+    w->phase = "  collecting: data set";
+    ok = ok && (!w->args->dataset || dataset_write(&w->def, w->validation, &error));
+    w->phase = "  collecting: sheet";
+    ok = ok && (!w->cell || sheet_write(w->sweep, w->dir, &sheet, &error));
+    w->phase = "  collecting: page";
+    ok = ok && (!w->cell || page_write(w->sweep, w->params, w->dir, &page, &error));
     progress_clear(w->progress);
-    return ok;
+    if (ok)
+        return 0;
+    batch_name_plainly(error, w->def.staging, w->dir);
+    return tell_end(w, error, "it was collecting");
 }
 
 /* Why the first few failed; the rest is in the folder. */
@@ -292,6 +317,30 @@ static void tell_failures(const Sweeping *w)
         }
         row_clear(&row);
     }
+}
+
+/* One line on what else is in the folder. */
+static void tell_names(const Sweeping *w, BatchNames *n, const char *one, const char *more, const char *advice)
+{
+    if (n->count) {
+        char *dir = g_filename_display_name(w->dir);
+        GString *s = g_string_new(NULL);
+        for (gsize i = 0; i < BATCH_TOLD && n->first[i]; i++)
+            g_string_append_printf(s, "%s%s", i ? ", " : "", n->first[i]);
+        fprintf(stderr, "%s: %" G_GUINT64_FORMAT " %s: %s%s%s\n", dir, n->count, n->count == 1 ? one : more, s->str, n->count > BATCH_TOLD ? " …" : "", advice);
+        g_string_free(s, TRUE);
+        g_free(dir);
+    }
+    batch_names_clear(n);
+}
+
+static void tell_others(const Sweeping *w)
+{
+    BatchNames names;
+    batch_unnamed(&w->def, &names);
+    tell_names(w, &names, "leaf is of no variant of this sweep, and kept", "leaves are of no variant of this sweep, and kept", "");
+    batch_hidden(&w->def, &names);
+    tell_names(w, &names, "hidden folder is of another run, at work or killed", "hidden folders are of other runs, at work or killed", "; remove what is of no run at work");
 }
 
 static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed, uint64_t missing)
@@ -312,16 +361,22 @@ static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed,
             fprintf(stderr, "%s: part %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT "; after the last one: venation sweep --collect\n", dir, w->shard, w->shards);
         else
             fprintf(stderr, "%s: %s%smanifest.csv, manifest.jsonl, leaves\n", dir, w->args->dataset ? "dataset, " : "", w->cell ? "sheet.png, index.html, " : "");
+        if (!w->args->shard)
+            tell_others(w);
     }
     g_free(dir);
     g_string_free(s, TRUE);
 }
 
 /* Leaves that were grown with other options than these are none that they could be collected by. */
-static int check_settings(const Sweeping *w)
+static int check_settings(Sweeping *w)
 {
     BatchCount count;
-    batch_count(&w->def, &count);
+    GError *error = NULL;
+    w->phase = "  collecting: checking";
+    if (!batch_count(&w->def, &count, &error))
+        return tell_end(w, error, "it was collecting");
+    progress_clear(w->progress);
     return count.stale == 0 ? 0
                             : cli_fail(EXIT_BAD_INPUT,
                                        "%s: %" G_GUINT64_FORMAT " of the leaves there are of other parameters or options: collect with those they were grown with, or grow them anew",
@@ -339,98 +394,17 @@ static int carry_out(Sweeping *w)
     if (!w->output)
         return run_report(error, FALSE);
     w->def.staging = output_staging(w->output);
+    w->def.watch = (Watch){on_collect, w};
     w->progress = w->args->quiet ? NULL : progress_new(w->name);
     int status = w->args->collect ? check_settings(w) : grow_all(w, &end);
+    if (status == 0 && !w->args->shard)
+        status = collect(w, &count);
+    progress_clear(w->progress);
     if (status != 0)
         return status;
-    if (!w->args->shard && !collect(w, &count, &error))
-        return run_report(error, FALSE);
     uint64_t failed = w->args->shard ? end.failed : count.failed;
     summarise(w, w->args->collect ? NULL : &end, failed, count.missing);
     return failed || count.missing ? EXIT_BAD_INPUT : 0;
-}
-
-/* ---- for a trial ---- */
-
-static gboolean list(const Sweeping *w)
-{
-    int digits = 1;
-    for (uint64_t n = sweep_count(w->sweep) - 1; n >= 10; n /= 10)
-        digits++;
-    for (uint64_t i = w->def.shard; i < sweep_count(w->sweep); i += w->def.shards) {
-        SweepVariant v;
-        sweep_variant(w->sweep, i, &v);
-        GString *s = g_string_new(NULL);
-        g_string_append_printf(s, "%*" G_GUINT64_FORMAT "  %s ", digits, i, v.name);
-        for (uint32_t k = 0; k < v.n; k++)
-            if (sweep_key(w->sweep, k).varies)
-                g_string_append_printf(s, " %s=%s", sweep_key(w->sweep, k).key, v.value[k] ? v.value[k] : "(parameter file's)");
-        g_string_append_c(s, '\n');
-        gboolean ok = cli_print(s->str) == 0;
-        g_string_free(s, TRUE);
-        sweep_variant_clear(&v);
-        if (!ok)
-            return FALSE;
-    }
-    return TRUE;
-}
-
-typedef struct {
-    gint64 limit;
-} Trial;
-
-static gboolean trial_tick(const BatchState *now, gpointer user) { return g_get_monotonic_time() < ((Trial *)user)->limit; }
-
-/* Grows the variant in the middle in a folder that goes again. */
-static void estimate(Sweeping *w)
-{
-    uint64_t count = sweep_count(w->sweep);
-    if (w->def.shard >= count) {
-        fputs("no variant is in this part\n", stderr);
-        return;
-    }
-    uint64_t mine = (count - w->def.shard - 1) / w->def.shards + 1, middle = w->def.shard + mine / 2 * w->def.shards;
-    char *folder = g_dir_make_tmp("venation-trial-XXXXXX", NULL), *staging = folder ? g_build_filename(folder, "staging", NULL) : NULL;
-    if (!folder)
-        return;
-    BatchDef def = w->def;
-    def.out = folder;
-    def.staging = staging;
-    def.threads = 1;
-    def.shard = (uint32_t)middle;
-    def.shards = (uint32_t)count;
-    Trial trial = {g_get_monotonic_time() + TRIAL_SECONDS * G_USEC_PER_SEC};
-    BatchState end;
-    gint64 begun = g_get_monotonic_time();
-    gboolean good = batch_run(&def, trial_tick, &trial, &end, NULL);
-    double seconds = (double)(g_get_monotonic_time() - begun) / G_USEC_PER_SEC;
-    uint64_t bytes = batch_bytes(&def, middle);
-    if (good && end.grown) {
-        char *size = g_format_size(bytes), *all = g_format_size(bytes * mine);
-        unsigned workers = (unsigned)MIN(mine, w->threads ? w->threads : g_get_num_processors());
-        char *each = duration(seconds), *whole = duration(seconds * (double)mine / workers);
-        fprintf(stderr, "%" G_GUINT64_FORMAT " variants of about %s and %s each (as number %" G_GUINT64_FORMAT ", grown for a trial): %s, %s on %u thread%s\n", mine, size,
-                each, middle, all, whole, workers, cli_s(workers));
-        g_free(each);
-        g_free(whole);
-        g_free(size);
-        g_free(all);
-    } else {
-        fprintf(stderr, "%" G_GUINT64_FORMAT " variants; %s\n", mine,
-                good ? "the one grown for a trial failed" : "the one grown for a trial takes longer than 20 s, so size and time are not known");
-    }
-    batch_remove(folder);
-    g_free(staging);
-    g_free(folder);
-}
-
-static int dry_run(Sweeping *w)
-{
-    if (!list(w))
-        return EXIT_FAILED;
-    if (!w->args->quiet)
-        estimate(w);
-    return 0;
 }
 
 static void clear(Sweeping *w)
@@ -455,7 +429,7 @@ static int run_sweep(const Verb *verb, int argc, char **argv)
         GError *error = NULL;
         status = EXIT_USAGE;
         if (read_args(&w, verb, &args))
-            status = !read_sweep(&w, &error) ? run_report(error, TRUE) : args.dry_run ? dry_run(&w) : carry_out(&w);
+            status = !read_sweep(&w, &error) ? run_report(error, TRUE) : args.dry_run ? sweep_trial(&w.def, args.quiet) : carry_out(&w);
         clear(&w);
     }
     cli_clear(verb, &args);
@@ -471,7 +445,11 @@ const Verb sweep_verb = {
     "manifest.jsonl, with parameters, counts and hashes of all, sheet.png and sheet.svg, a picture of all leaves with what varies along its axes, and index.html, "
     "a page to browse them with.\n\n"
     "Stopped or killed at any time, the same command does what is missing. --shard I/N does one of N parts, on one machine or many that share the folder; "
-    "--collect, with the same options, then writes manifest, sheet and page.\n\n"
+    "--collect, with the same options, then writes manifest, sheet and page. Several runs on one folder at once do no harm: each leaves to the others what they have in hand. "
+    "Leaves that are of no variant of the sweep file any more are kept, and told of.\n\n"
+    "'sha256' in the manifest is of a leaf's whole folder but sweep.json: ls | grep -vx sweep.json | LC_ALL=C sort | xargs sha256sum | sha256sum gives it there.\n\n"
+    "The exit status is 0 when all leaves are there, 3 when some can't be grown or are missing (the others are there), 2 or 3 when the command or the file is wrong, 1 when the machine failed, "
+    "as by a full disk, and 128 plus the signal when it was stopped.\n\n"
     "A sweep file has one section, [sweep]. 'params' is the parameter file that all variants begin with. 'mode' is grid (every combination, the last key changing fastest; "
     "the default), zip (the first values of all keys, then the second ones) or sample ('count' variants, drawn by chance). Every other line is a key of the parameter table "
     "as section.key, or 'seed', the run's ('each': another one for every variant), and its values:\n\n"

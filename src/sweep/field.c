@@ -7,8 +7,7 @@
 #include "param/value.h"
 #include "sweep/private.h"
 
-/* 2^53: every tool that reads a manifest holds it exactly. */
-static const ParamInfo seed_info = {"", "seed", TYPE_INTEGER, "", "1", 0, 9007199254740992.0, "", ""};
+static const ParamInfo seed_info = {"", "seed", TYPE_INTEGER, "", "1", 0, MOST_SEED, "", ""};
 static const ParamInfo name_info = {"", "name", TYPE_TEXT, "", "", 0, 0, "", ""};
 
 gboolean sweep_fail(const Spot *spot, const char *key, ParamErrorCode code, GError **error, const char *format, ...)
@@ -94,7 +93,9 @@ gboolean sweep_field(const Spot *spot, const char *key, SweepField *out, GError 
 char *sweep_value(const Spot *spot, const SweepField *f, const char *text, GError **error)
 {
     Value v;
-    if (!value_parse(f->info, text, &v)) {
+    guint64 seed; /* the digits themselves: 2^53 + 1 would be read as 2^53 */
+    bool beyond = f->id == FIELD_SEED && g_ascii_string_to_unsigned(text, 10, 0, G_MAXUINT64, &seed, NULL) && seed > MOST_SEED;
+    if (beyond || !value_parse(f->info, text, &v)) {
         sweep_refuse(spot, f, text, error);
         return NULL;
     }
@@ -145,8 +146,10 @@ int sweep_digits(double largest, double gap, int least)
 char *sweep_number_text(double value, int digits, bool whole)
 {
     char text[G_ASCII_DTOSTR_BUF_SIZE];
-    if (whole)
-        return g_strdup_printf("%" G_GINT64_FORMAT, (int64_t)floor(value + 0.5));
+    if (whole) { /* from 2^52 on every number is, and half of one more would be lost */
+        double nearest = fabs(value) < 0x1p52 ? floor(value + 0.5) : value;
+        return g_strdup_printf("%" G_GINT64_FORMAT, (int64_t)nearest);
+    }
     char format[8] = {'%', '.', (char)('0' + digits / 10), (char)('0' + digits % 10), 'g', '\0'};
     g_ascii_formatd(text, sizeof text, format, value + 0.0);
     /* As the parameter table writes numbers, so that there is one text for one number. */

@@ -97,6 +97,17 @@ void sweep_axis_label(SweepAxis *axis)
     }
 }
 
+/* Devices on Windows, whatever comes after a point: no file can be called so there. */
+static bool is_device(const char *name)
+{
+    static const char *const device[] = {"con", "prn", "aux", "nul"};
+    gsize stem = strcspn(name, ".");
+    for (gsize i = 0; i < G_N_ELEMENTS(device); i++)
+        if (stem == 3 && g_ascii_strncasecmp(name, device[i], 3) == 0)
+            return true;
+    return stem == 4 && g_ascii_isdigit(name[3]) && (g_ascii_strncasecmp(name, "com", 3) == 0 || g_ascii_strncasecmp(name, "lpt", 3) == 0);
+}
+
 gboolean sweep_check_name(const Spot *spot, const char *name, GError **error)
 {
     const char *wrong = NULL;
@@ -110,6 +121,8 @@ gboolean sweep_check_name(const Spot *spot, const char *name, GError **error)
         wrong = "must be of the letters A to Z, digits, and _ . + -, begin with no - and end with no point";
     else if (g_ascii_strcasecmp(name, "sweep") == 0)
         wrong = "is what a sweep calls files of its own";
+    else if (is_device(name))
+        wrong = "is a device on Windows, which has no files called so";
     if (!wrong)
         return TRUE;
     SweepField f = {.key = (char *)"name"};

@@ -13,6 +13,7 @@ typedef struct {
     bool varies;
 } SweepField;
 enum { FIELD_SEED = -1, FIELD_NAME = -2 };
+#define MOST_SEED 9007199254740992u /* 2^53: every tool that reads a manifest holds it exactly */
 
 typedef enum {
     AXIS_LIST,  /* cell[] */

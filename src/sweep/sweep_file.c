@@ -136,7 +136,7 @@ static gboolean read_value(Reader *r, const char *key, const char *value, GError
     }
     if (strcmp(key, "sample_seed") == 0) {
         r->has_seed = true;
-        return read_number(r, key, value, 0, (uint64_t)1 << 53, &s->sample_seed, error);
+        return read_number(r, key, value, 0, MOST_SEED, &s->sample_seed, error);
     }
     return read_axis(r, key, value, error);
 }
@@ -190,22 +190,28 @@ static bool only_chance(const Sweep *s)
     return chance && !lists;
 }
 
-static gboolean too_many(const Reader *r, double count, GError **error)
+/* `axis`: the longest, the one to shorten. */
+static gboolean too_many(const Reader *r, const SweepAxis *axis, double count, GError **error)
 {
-    Spot spot = {r->spot.path, r->mode_line, false};
-    return sweep_fail(&spot, NULL, PARAM_ERROR_VALUE, error, "%.10g variants are too many; there may be up to %d", count, SWEEP_MOST);
+    Spot spot = {r->spot.path, axis->line, false};
+    return sweep_fail(&spot, axis->table ? "table" : axis->field->key, PARAM_ERROR_VALUE, error,
+                      ": has %" G_GUINT64_FORMAT " values, and %.10g variants are too many; there may be up to %d", axis->levels, count, SWEEP_MOST);
 }
 
 static gboolean count_grid(Reader *r, GError **error)
 {
     Sweep *s = r->sweep;
+    const SweepAxis *longest = NULL;
     double all = 1.0;
     for (guint i = 0; i < s->axis->len; i++) {
         const SweepAxis *axis = &g_array_index(s->axis, SweepAxis, i);
-        all *= axis->levels && !axis->drawn ? (double)axis->levels : 1.0;
+        if (!axis->levels || axis->drawn)
+            continue;
+        all *= (double)axis->levels;
+        longest = longest && longest->levels >= axis->levels ? longest : axis;
     }
     if (all > SWEEP_MOST)
-        return too_many(r, all, error);
+        return too_many(r, longest, all, error);
     s->count = 1;
     for (guint i = s->axis->len; i-- > 0;) { /* the last key changes fastest */
         SweepAxis *axis = &g_array_index(s->axis, SweepAxis, i);
@@ -227,7 +233,7 @@ static gboolean count_zip(Reader *r, GError **error)
             continue;
         Spot spot = {r->spot.path, axis->line, false};
         if (axis->levels > SWEEP_MOST)
-            return too_many(r, (double)axis->levels, error);
+            return too_many(r, axis, (double)axis->levels, error);
         if (first && axis->levels != first->levels)
             return sweep_fail(&spot, axis->table ? "table" : axis->field->key, PARAM_ERROR_VALUE, error,
                               ": has %" G_GUINT64_FORMAT " values, and %s of line %u has %" G_GUINT64_FORMAT
@@ -272,6 +278,20 @@ static gboolean count_variants(Reader *r, GError **error)
         return sweep_fail(&spot, "mode", PARAM_ERROR_VALUE, error,
                           ": nothing to combine, all that varies is drawn by chance; that is mode = sample, with a count");
     return s->mode == SWEEP_GRID ? count_grid(r, error) : count_zip(r, error);
+}
+
+/* Seeds that follow each other end where single ones do. */
+static gboolean check_seeds(const Reader *r, GError **error)
+{
+    const Sweep *s = r->sweep;
+    for (guint i = 0; i < s->axis->len; i++) {
+        const SweepAxis *axis = &g_array_index(s->axis, SweepAxis, i);
+        Spot spot = {r->spot.path, axis->line, false};
+        if (axis->kind == AXIS_EACH && s->sample_seed + (s->count - 1) > MOST_SEED)
+            return sweep_fail(&spot, "seed", PARAM_ERROR_VALUE, error,
+                              " = each: the last would be beyond 2^53; sample_seed may be up to %" G_GUINT64_FORMAT, MOST_SEED - (s->count - 1));
+    }
+    return TRUE;
 }
 
 static unsigned next_prime(unsigned n)
@@ -337,7 +357,7 @@ static gboolean finish(Reader *r, GError **error)
         if (axis->field->id == FIELD_SEED && !axis->table && axis->kind == AXIS_LIST && axis->levels == 1 && !r->has_seed)
             s->sample_seed = (uint64_t)g_ascii_strtoull(axis->cell[0], NULL, 10);
     }
-    if (!count_variants(r, error))
+    if (!count_variants(r, error) || !check_seeds(r, error))
         return FALSE;
     seat_chance(s);
     sweep_plan_names(s);

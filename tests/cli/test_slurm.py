@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""A sweep as a Slurm job array, against a controller and two node daemons on loopback, one of which dies in mid-array. Emits TAP.
+"""A sweep as a Slurm job array, against a controller and two node daemons on loopback, one of which dies in mid-array; some variants can't be grown.
+Emits TAP.
 
     test_slurm.py VENATION BATCH_SCRIPT
 
 Needs Slurm and munge, and root to start them; skips without.
 """
 import glob
+import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -42,7 +45,9 @@ mode = sample
 count = 48
 seed = each
 veins.kill_distance = uniform(1, 3)
+growth.initial_length = choice(20; 20; 20; 20; 20; 20; 20; 300)
 """
+PARTS = 6
 CONF = """\
 ClusterName=leaftest
 SlurmctldHost={host}(127.0.0.1)
@@ -140,6 +145,10 @@ class Cluster:
     def says(self, *command):
         return subprocess.run(command, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False).stdout.decode().strip()
 
+    def status(self, job):
+        """Exit status of a job that has ended."""
+        return int(re.search(r"ExitCode=(\d+):0", self.says("scontrol", "show", "job", job)).group(1))
+
     def submit(self, *args):
         job = self.says("sbatch", "--parsable", *args)
         if not job.isdigit():
@@ -214,11 +223,16 @@ def test_array_with_a_node_that_dies():
         raise Skip("needs Slurm, munge and root")
     write("leaf.ini", LEAF)
     write("many.ini", SWEEP)
-    same(run("sweep", "many.ini", "-q", "-o", "alone").status, 0)
+    what = ("many.ini", "-q", "--dataset", "--size", "64")
+    same(run("sweep", *what, "-o", "alone").status, 3)
+    with open("alone/manifest.jsonl", encoding="utf-8") as file:
+        bad = [row["index"] for row in map(json.loads, file) if row["outcome"] == "failed"]
+    parts = {index % PARTS + 1 for index in bad}
+    same(0 < len(bad) < 24 and 0 < len(parts) < PARTS, True, "some parts have variants that can't be grown, and some have none")
     cluster = Cluster(os.path.join(os.getcwd(), "cluster"))
     try:
-        array = cluster.submit("--array=1-6", SCRIPT, "many.ini", "-q", "-o", "out")
-        last = cluster.submit(f"--dependency=afterany:{array}", SCRIPT, "many.ini", "-q", "-o", "out")
+        array = cluster.submit(f"--array=1-{PARTS}", SCRIPT, *what, "-o", "out")
+        last = cluster.submit(f"--dependency=afterany:{array}", SCRIPT, *what, "-o", "out")
         until("the first leaves", lambda: len(leaves()) >= 3)
         cluster.lose("leaf2")
         before = len(leaves())
@@ -226,12 +240,21 @@ def test_array_with_a_node_that_dies():
         cluster.revive("leaf2")
         until("the array and the collection", lambda: cluster.hurry(array) or not cluster.says("squeue", "-h", "-j", f"{array},{last}"))
         told = cluster.says("scontrol", "show", "job", array)
+        ended = {task: cluster.status(f"{array}_{task}") for task in range(1, PARTS + 1)}
+        collected = cluster.status(last)
     finally:
         cluster.stop()
     same(before < 48, True, "the node died in mid-array")
     holds(told, "Restarts=1")
     same(files("out"), files("alone"))
     same(contents("out") == contents("alone"), True, "what the array made is what one process makes")
+    same(ended, {task: 3 if task in parts else 0 for task in ended}, "exit status of the parts")
+    same(collected, 3, "exit status of the collection")
+    same(len(os.listdir("out/failed")), len(bad))
+    with open(f"venation-{last}-4294967294.log", encoding="utf-8") as file:
+        log = file.read()
+    for name in sorted(os.listdir("out/failed"))[:3]:  # the first few are named
+        holds(log, name.removesuffix(".json") + ": growth.final_length = 200 must not be below")
 
 
 if __name__ == "__main__":

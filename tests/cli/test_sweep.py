@@ -4,8 +4,10 @@
     test_sweep.py VENATION
 """
 import csv
+import hashlib
 import json
 import os
+import pty
 import random
 import re
 import resource
@@ -154,6 +156,54 @@ def test_dry_run():
     same(os.path.exists("out"), False)
     lines = sweep("many.ini", "--dry-run", "-q", "--shard", "2/5").out.splitlines()
     same([int(line.split()[0]) for line in lines], [1, 6, 11])
+    same(run("sweep", "many.ini", "--dry-run", "--collect").status, 2)
+
+
+def test_dry_run_on_a_terminal():
+    """The first variants alone, and the estimate after them; in a pipe all, and the estimate before them."""
+    sweep_file("[sweep]\nparams = leaf.ini\nseed = from 1 to 1000 by 1\n")
+    master, slave = pty.openpty()
+    done = subprocess.Popen([VENATION, "sweep", "many.ini", "--dry-run"], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave, env=environment())
+    os.close(slave)
+    shown = b""
+    while part := read_terminal(master):
+        shown += part
+    same(done.wait(TIMEOUT), 0)
+    lines = shown.decode().splitlines()
+    same([int(line.split()[0]) for line in lines[:20]], list(range(20)))
+    holds(lines[20], "… and 980 more")
+    holds(lines[-1], "1000 variants of about ")
+    both = subprocess.run([VENATION, "sweep", "many.ini", "--dry-run"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment(), check=True)
+    lines = both.stdout.decode().splitlines()
+    same(len(lines), 1001)
+    holds(lines[0], "1000 variants of about ")
+
+
+def read_terminal(master):
+    try:
+        return os.read(master, 65536)
+    except OSError:  # EIO: the other end is closed
+        return b""
+
+
+def test_dry_run_leaves_nothing_behind():
+    sweep_file()
+    os.mkdir("trials")
+    for number, times in ((signal.SIGINT, 1), (signal.SIGTERM, 1), (signal.SIGINT, 2)):
+        process = subprocess.Popen([VENATION, "sweep", "many.ini", "--dry-run", "--set", "growth.final_length=400"], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment(TMPDIR=os.path.abspath("trials")))
+        while process.poll() is None and not os.listdir("trials"):
+            time.sleep(0.01)
+        time.sleep(0.2)
+        for _ in range(times):
+            process.send_signal(number)
+        process.communicate(timeout=TIMEOUT)
+        same(process.returncode, 128 + number)
+        same(os.listdir("trials"), [])
+    same(os.path.exists("out"), False)
+    result = run("sweep", "many.ini", "--dry-run", env=environment(TMPDIR="/dev/null/x"))
+    same(result.status, 1)
+    holds(result.err, "/dev/null")
 
 
 # --- training data ------------------------------------------------------------------------------------------------
@@ -292,6 +342,123 @@ def test_killed_at_any_moment():
     same(contents("killed") == contents("whole"), True, "after kills")
 
 
+def test_two_at_once():
+    """Each leaves to the other what it has in hand, and the bytes are those of one."""
+    sweep_file(GRID.replace("seed = 1; 2", "seed = 1; 2; 3; 4"))
+    longer = ["--set", "growth.final_length=120", "--threads", "1", "--dataset"]
+    sweep("many.ini", "-q", "-o", "alone", *longer)
+    both = [subprocess.Popen([VENATION, "sweep", "many.ini", *longer], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment()) for _ in range(2)]
+    told = [one.communicate(timeout=TIMEOUT)[1].decode() for one in both]
+    same([one.returncode for one in both], [0, 0], f"{told}")
+    grown = sum(int(re.search(r"(\d+) lea", text).group(1)) for text in told)
+    if not 24 <= grown <= 27:
+        raise AssertionError(f"{grown} grown of 24: {told}")
+    same(files("out/many"), files("alone"))
+    same(contents("out/many") == contents("alone"), True, "two at once")
+
+
+def test_run_that_is_dead_elsewhere():
+    """What a run on another machine had in hand is grown when all else is there, and its folder is named and kept."""
+    sweep_file()
+    for name in ("kill_distance-1_pattern-open_seed-1", "kill_distance-4_pattern-closed_seed-2"):
+        os.makedirs(f"out/many/.venation-far-away-7-abcdef/{name}")
+    os.makedirs("out/many/.venation-far-away-8-abcdef")
+    result = sweep("many.ini", "--write", "none")
+    holds(result.err, "12 leaves grown, 0 were there")
+    holds(result.err, "out/many: 2 hidden folders are of other runs, at work or killed: .venation-far-away-7-abcdef, .venation-far-away-8-abcdef; remove")
+    shutil.rmtree("out/many/.venation-far-away-7-abcdef")
+    holds(sweep("many.ini", "--collect", "--write", "none").err, "1 hidden folder is of another run")
+    lacks(sweep("many.ini", "--write", "none", "--shard", "1/2").err, "hidden folder")
+    lacks(sweep("many.ini", "-q", "--write", "none").err, "hidden folder")
+    # This machine's dead are swept away.
+    dead = subprocess.Popen(["true"])
+    dead.wait()
+    os.makedirs(f"out/many/.venation-{os.uname().nodename}-{dead.pid}-abcdef/x")
+    lacks(sweep("many.ini", "--write", "none").err, "2 hidden")
+    same([n for n in os.listdir("out/many") if n.startswith(".")], [".venation-far-away-8-abcdef"])
+
+
+def test_leaves_of_no_variant_are_kept_and_told():
+    first = sweep(sweep_file(), "--write", "none")
+    lacks(first.err, "of no variant")
+    sweep_file(GRID.replace("1; 2; 4", "1; 2; 3") + "growth.initial_length = 20; 90\n")
+    result = sweep("many.ini", "--write", "none", status=3)
+    holds(result.err, "out/many: 12 leaves are of no variant of this sweep, and kept: leaves/kill_distance-1_pattern-closed_seed-1, ")
+    holds(result.err, " …\n")
+    os.makedirs("out/many/leaves/mine/notes")  # whose they are can't be told
+    write("out/many/leaves/mine/notes/a.txt", "x")
+    sweep_file(GRID.replace("1; 2; 4", "1; 3") + "growth.initial_length = 20; 90\n")
+    holds(sweep("many.ini", "--write", "none", status=3).err, "out/many: 20 leaves are of no variant")  # 12, four of 2 that grew and four that did not
+    same(len(os.listdir("out/many/leaves")), 12 + 12 + 1)
+    same(len(os.listdir("out/many/failed")), 12)
+
+
+def test_sums():
+    """A reader can verify what is there by the manifest alone."""
+    sweep(sweep_file(), "-q")
+    for row in rows("out/many"):
+        folder, lines, size = f"out/many/{row['folder']}", "", 0
+        for name in sorted(set(os.listdir(folder)) - {"sweep.json"}):
+            with open(f"{folder}/{name}", "rb") as file:
+                data = file.read()
+            lines += f"{hashlib.sha256(data).hexdigest()}  {name}\n"
+            size += len(data)
+        same((len(lines.splitlines()), size, hashlib.sha256(lines.encode()).hexdigest()), (row["files"], row["bytes"], row["sha256"]))
+    command = "ls | grep -vx sweep.json | LC_ALL=C sort | xargs sha256sum | sha256sum"
+    same(subprocess.run(command, shell=True, cwd=folder, stdout=subprocess.PIPE, check=True).stdout.decode().split()[0], row["sha256"])
+
+
+def test_large_seeds():
+    sweep(sweep_file("[sweep]\nparams = leaf.ini\nseed = 9007199254740989; 9007199254740991; 9007199254740992\n"), "-q", "--write", "none")
+    wanted = ["9007199254740989", "9007199254740991", "9007199254740992"]
+    found = rows("out/many")
+    same([str(r["seed"]) for r in found], wanted)
+    same([r["variant"] for r in found], ["seed-" + s for s in wanted])
+    same(len({r["network_hash"] for r in found}), 3)
+    with open("out/many/manifest.csv", encoding="utf-8", newline="") as file:
+        same([r["seed"] for r in csv.DictReader(file)], wanted)
+    with open("out/many/page/0.js", encoding="utf-8") as file:
+        page = file.read()
+    for seed in wanted:
+        holds(page, f'"{seed}"')
+    record = json.loads(contents("out/many")["leaves/seed-9007199254740991/seed-9007199254740991.json"])
+    same(str(record["seed"]), "9007199254740991")
+    # As the page tells it to be grown alone.
+    same(run("grow", "leaf.ini", "-q", "--seed", wanted[1], "--maps", "none", "-o", "alone").status, 0)
+    same(json.loads(contents("alone")["leaf.json"])["network"]["hash"], found[1]["network_hash"])
+
+
+def test_collecting_tells_how_far_it_is_and_stops():
+    sweep(sweep_file("[sweep]\nparams = leaf.ini\nseed = from 1 to 400 by 1\n"), "-q", "--write", "none", "--cell", "32", "--set", "growth.final_length=22")
+    again = ["many.ini", "--write", "none", "--cell", "32", "--set", "growth.final_length=22", "--collect"]
+    before = contents("out/many")
+    shown = run_on_terminal("sweep", *again)
+    same(shown.status, 0)
+    for phase in ("checking", "manifest", "sheet", "page"):
+        if phase in ("checking", "sheet"):  # others may be over before they are told
+            holds(shown.err, "collecting: " + phase)
+    chance, stopped = random.Random(5), 0
+    for _ in range(8):
+        process = subprocess.Popen([VENATION, "sweep", *again], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment())
+        time.sleep(chance.uniform(0.01, 0.3))
+        process.send_signal(signal.SIGINT)
+        told = process.communicate(timeout=TIMEOUT)[1].decode()
+        if process.returncode not in (0, 128 + signal.SIGINT, -signal.SIGINT):  # the last: before it minds signals
+            raise AssertionError(f"{process.returncode}: {told!r}")
+        stopped += process.returncode == 128 + signal.SIGINT and "it was collecting" in told
+        same(files("out/many"), sorted(before))
+    if not stopped:
+        raise AssertionError("never stopped while it collected")
+    for _ in range(6):  # what a killed one leaves is hidden, and swept away by the next
+        process = subprocess.Popen([VENATION, "sweep", *again], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment())
+        time.sleep(chance.uniform(0.05, 0.3))
+        process.kill()
+        process.wait()
+        same([name for name in files("out/many") if not name.startswith(".")], sorted(before))
+    sweep(*again)
+    same(contents("out/many") == before, True, "collected after all")
+
+
 def test_interrupted():
     sweep_file()
     process = subprocess.Popen([VENATION, "sweep", "many.ini", "--set", "growth.final_length=200"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment())
@@ -364,6 +531,8 @@ def test_refusals():
         "veins.kill_distance = 1; -2": "-2",
         "seed = from 1 to 1000000000 by 1": "1000000000",
         "mode = zip\nname = ../a; b\nveins.kill_distance = 1; 2": "would leave the folder",
+        "mode = zip\nname = a; aux\nveins.kill_distance = 1; 2": "Windows",
+        "veins.kill_distance = 1; 2\nseed = from 1 to 999999999 by 1": "many.ini:4: [sweep] seed: has 999999999 values",
     }
     for lines, part in cases.items():
         sweep_file(f"[sweep]\nparams = leaf.ini\n{lines}\n")

@@ -40,6 +40,7 @@ kill_distance = 2
 [texture]
 size = 32
 """
+MANY = "[sweep]\nparams = small.ini\nveins.kill_distance = 2; 3; 4\n"
 NETWORK = """\
 <graphml xmlns="http://graphml.graphdrawing.org/xmlns">
 <key id="x" for="node" attr.name="x" attr.type="double"/><key id="y" for="node" attr.name="y" attr.type="double"/>
@@ -150,7 +151,7 @@ def write_jpeg(path, width, height):
 
 
 def write_inputs():
-    for name, text in ("small.ini", SMALL), ("bad.ini", SMALL + "colour = 3\n"), ("hand.graphml", NETWORK):
+    for name, text in ("many.ini", MANY), ("small.ini", SMALL), ("bad.ini", SMALL + "colour = 3\n"), ("hand.graphml", NETWORK):
         with open(name, "w") as file:
             file.write(text)
     write_png("leaf.png", 60, 100)
@@ -234,6 +235,25 @@ class Case:
         check(lines and lines[-1].startswith("venation: ") and (whole or len(lines) == 1), what, "says", repr(said))
         check(told(said), what, "says", repr(said))
         check(".venation-" not in said, what, "names the hidden folder", said)
+        return reached
+
+
+class Many(Case):
+    """A sweep: each leaf and each file is whole or not there, and the next run makes what is missing."""
+
+    def fail(self, at, mode, told):
+        status, _, said, folder, count = self.call(f"{at}-{mode}", at, mode)
+        what = f"{self.name}, {' '.join(f'{k}={v}' for k, v in self.env.items() if k != 'LD_PRELOAD')} FAULT_MODE={mode} FAULT_AT={at}:"
+        left, reached = tree(folder), calls(count) >= at or status == 0  # two threads: not all runs have as many calls
+        check(status == 0 and left == self.after or status == 1 and told(said) and said.splitlines()[-1].startswith("venation: "), what, status, repr(said))
+        check(".venation-" not in said, what, "names the hidden folder", said)
+        leaves = {"/".join(n.split("/")[:3]) + "/" for n in left if n.startswith("out/leaves/") and n != "out/leaves/"}
+        wanted = {n: self.after[n] for n in self.after if n in left or any(n.startswith(leaf) for leaf in leaves)}
+        check(left == wanted, what, "half there:", differ(left, wanted))
+        status, _, said = run(self.args, folder)
+        check(status == 0 and tree(folder) == self.after, what, "the run after it:", status, said, differ(tree(folder), self.after))
+        shutil.rmtree(folder)
+        os.unlink(count)
         return reached
 
 
@@ -401,6 +421,12 @@ def tests():
             yield (f"disk: {name}, {kind} {errno.errorcode[number]} {mode}",
                    lambda a=args, e=earlier, n=name, k=kind, x=number, m=mode: test_disk(n, a, e, k, x, m))
         yield f"disk: {name}, short writes", lambda a=args, e=earlier, n=name: test_short(n, a, e)
+    many = ("sweep", "many.ini", "--write", "svg network", "--quiet", "--cell")
+    for mode in "once", "on":
+        yield f"memory: sweep, {mode}", lambda m=mode: sweep(Many("sweep", (*many, "0"), None, ALLOC), no_memory, m)
+    for kind, number, mode in ("ow", errno.ENOSPC, "once"), ("w", errno.ENOSPC, "on"), ("c", errno.EIO, "once"), ("r", errno.EIO, "once"):
+        yield (f"disk: sweep, {kind} {errno.errorcode[number]} {mode}",
+               lambda k=kind, x=number, m=mode: sweep(Many("sweep", (*many, "32"), None, WRITE, FAULT_KIND=k, FAULT_ERRNO=str(x)), names_reason(x), m))
     grow, frames, shape = (RUNS[i][1] for i in range(3))
     yield "disk: files may not grow", lambda: test_file_limit(grow)
     yield "disk: full, grow", lambda: test_full_disk(grow)

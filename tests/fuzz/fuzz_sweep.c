@@ -8,6 +8,9 @@ static void check_name(const char *name)
     require(*name && strlen(name) < 200 && strcmp(name, ".") && strcmp(name, "..") && g_utf8_validate(name, -1, NULL));
     for (const char *c = name; *c; c++)
         require((guchar)*c > ' ' && *c != '/' && *c != '\\' && *c != ':' && *c != 127);
+    static const char *const device[] = {"con", "prn", "aux", "nul", "com1", "lpt1"}; /* on Windows, whatever comes after a point */
+    for (gsize i = 0; i < G_N_ELEMENTS(device); i++)
+        require(g_ascii_strncasecmp(name, device[i], strlen(device[i])) != 0 || (name[strlen(device[i])] && name[strlen(device[i])] != '.'));
 }
 
 static char *check_variant(const Sweep *s, uint64_t index)

@@ -114,7 +114,7 @@ static char *read_file(const Fixture *f, const char *name)
 static void write_page(const Fixture *f, const char *title)
 {
     GError *error = NULL;
-    g_assert_true(page_write(f->s, sweep_params(f->s), f->dir, title, &error));
+    g_assert_true(page_write(f->s, sweep_params(f->s), f->dir, &(PageDef){.title = title}, &error));
     g_assert_no_error(error);
 }
 
@@ -288,7 +288,7 @@ static void test_large(void)
     expect(json_node_get_object(node), "@outcome", 320, "2");
     json_node_unref(node);
     GError *error = NULL;
-    g_assert_true(page_write(less.s, sweep_params(less.s), folder, NULL, &error));
+    g_assert_true(page_write(less.s, sweep_params(less.s), folder, &(PageDef){0}, &error));
     g_assert_no_error(error);
     char *first = read_file(&f, "page/0.js");
     g_assert_nonnull(first);
@@ -333,7 +333,7 @@ static void test_page_text(void)
     GError *error = NULL;
     put(f.dir, "taken", "a file");
     char *path = g_build_filename(f.dir, "taken", NULL);
-    g_assert_false(page_write(f.s, sweep_params(f.s), path, NULL, &error));
+    g_assert_false(page_write(f.s, sweep_params(f.s), path, &(PageDef){0}, &error));
     g_assert_nonnull(error);
     g_assert_cmpuint(error->domain, ==, G_FILE_ERROR);
     g_clear_error(&error);

@@ -139,6 +139,7 @@ static void test_grid(void)
 
 static void test_zip(void)
 {
+    ALL("mode = zip\nname = cone; auxin; com; null.con\nseed = 1; 2; 3; 4", "cone|1|1", "auxin|2|2", "com|3|3", "null.con|4|4"); /* no devices */
     ALL("mode = zip\nveins.kill_distance = 40; 20\nwidth.minimum = 1; 1\ntexture.size = 64\n", "kill_distance-40_minimum-1|1|40 1 64",
         "kill_distance-20_minimum-1|1|20 1 64");
     ALL("mode = zip\nveins.kill_distance = 4; 4\nwidth.minimum = 1; 1\nseed = each\n", "000000_kill_distance-4_minimum-1|1|4 1 1",
@@ -155,6 +156,11 @@ static void test_ranges(void)
     ALL("texture.size = from 64 to 1024 in 3 log\n", "size-64|1|64", "size-256|1|256", "size-1024|1|1024");
     ALL("outline.teeth_count = from 10 to 30 by 10\n", "teeth_count-10|1|10", "teeth_count-20|1|20", "teeth_count-30|1|30");
     ALL("pose.strength = from -1 to 1 by 1\n", "strength--1|1|-1", "strength-0|1|0", "strength-1|1|1");
+    ALL("seed = from 9007199254740989 to 9007199254740992 by 1\n", "seed-9007199254740989|9007199254740989|9007199254740989",
+        "seed-9007199254740990|9007199254740990|9007199254740990", "seed-9007199254740991|9007199254740991|9007199254740991",
+        "seed-9007199254740992|9007199254740992|9007199254740992");
+    ALL("seed = each\nsample_seed = 9007199254740991\nveins.kill_distance = 1; 2\n", "kill_distance-1|9007199254740991|9007199254740991 1",
+        "kill_distance-2|9007199254740992|9007199254740992 2");
     Sweep *s = read_sweep("width.minimum = from 9 to 9.00001 in 2000\nwidth.exponent = from 1 to 1.1 in 7 log\n"); /* enough digits */
     check_sound(s);
     g_assert_cmpuint(sweep_count(s), ==, 14000);
@@ -585,9 +591,20 @@ static void test_refused(void)
     check_refused("mode = grid\nveins.kill_distance = uniform(1, 2)", "@/s.ini:3: [sweep] mode: nothing to combine, all that varies is drawn "
                                                                       "by chance; that is mode = sample, with a count");
     check_refused("mode = grid\nveins.kill_distance = from 1 to 1000 by 1\nseed = from 1 to 1000000 by 1",
-                  "@/s.ini:3: [sweep] 1000000000 variants are too many; there may be up to 999999999");
+                  "@/s.ini:5: [sweep] seed: has 1000000 values, and 1000000000 variants are too many; there may be up to 999999999");
     check_refused("mode = zip\nseed = from 1 to 1000000000 by 1",
-                  "@/s.ini:3: [sweep] 1000000000 variants are too many; there may be up to 999999999");
+                  "@/s.ini:4: [sweep] seed: has 1000000000 values, and 1000000000 variants are too many; there may be up to 999999999");
+    check_refused("seed = 1; 9007199254740993", "@/s.ini:3: [sweep] seed = 9007199254740993: must be a whole number from 0 to 2^53, or each");
+    check_refused("mode = sample\ncount = 3\nsample_seed = 9007199254740991\nseed = each",
+                  "@/s.ini:6: [sweep] seed = each: the last would be beyond 2^53; sample_seed may be up to 9007199254740990");
+    static const char *const device[] = {"con", "AUX", "nul.a", "Prn", "com1", "LPT9.x.y"};
+    for (gsize i = 0; i < G_N_ELEMENTS(device); i++) {
+        char *body = g_strdup_printf("mode = zip\nname = a; %s\nseed = 1; 2", device[i]);
+        char *message = g_strdup_printf("@/s.ini:4: [sweep] name = %s: is a device on Windows, which has no files called so", device[i]);
+        check_refused(body, message);
+        g_free(message);
+        g_free(body);
+    }
     check_refused("mode = zip\nseed = 1; 2; 3\nveins.kill_distance = 1; 2",
                   "@/s.ini:5: [sweep] veins.kill_distance: has 2 values, and seed of line 4 has 3; in mode zip there must be as many (or one for all)");
     check_refused("seed = 1; 2; 01", "@/s.ini:3: [sweep] seed: two values are the same");

@@ -1,0 +1,166 @@
+#include "cli/sweep_trial.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "cli/interrupt.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/run.h"
+
+enum { TRIAL_SECONDS = 20, MOST_SHOWN = 20 };
+
+char *sweep_duration(double seconds)
+{
+    if (seconds < 99.5)
+        return g_strdup_printf("%.0f s", MAX(seconds, 1.0));
+    return seconds < 5970.0 ? g_strdup_printf("%.0f min", seconds / 60.0) : g_strdup_printf("%.1f h", seconds / 3600.0);
+}
+
+static uint64_t variants(const BatchDef *def)
+{
+    uint64_t count = sweep_count(def->sweep);
+    return def->shard < count ? (count - def->shard - 1) / def->shards + 1 : 0;
+}
+
+/* ---- the list ---- */
+
+static gboolean list_one(const Sweep *s, uint64_t index, int digits)
+{
+    SweepVariant v;
+    sweep_variant(s, index, &v);
+    GString *text = g_string_new(NULL);
+    g_string_append_printf(text, "%*" G_GUINT64_FORMAT "  %s ", digits, index, v.name);
+    for (uint32_t k = 0; k < v.n; k++)
+        if (sweep_key(s, k).varies)
+            g_string_append_printf(text, " %s=%s", sweep_key(s, k).key, v.value[k] ? v.value[k] : "(parameter file's)");
+    g_string_append_c(text, '\n');
+    gboolean ok = cli_print(text->str) == 0;
+    g_string_free(text, TRUE);
+    sweep_variant_clear(&v);
+    return ok;
+}
+
+static gboolean list(const BatchDef *def, uint64_t most)
+{
+    uint64_t mine = variants(def);
+    int digits = 1;
+    for (uint64_t n = sweep_count(def->sweep) - 1; n >= 10; n /= 10)
+        digits++;
+    for (uint64_t i = 0; i < MIN(mine, most); i++)
+        if (!list_one(def->sweep, def->shard + i * def->shards, digits))
+            return FALSE;
+    if (mine <= most)
+        return TRUE;
+    char *rest = g_strdup_printf("… and %" G_GUINT64_FORMAT " more; in a pipe or file all are listed\n", mine - most);
+    gboolean ok = cli_print(rest) == 0;
+    g_free(rest);
+    return ok;
+}
+
+/* ---- the estimate ---- */
+
+typedef struct {
+    Output *output; /* whose hidden folder all is in */
+    Interrupt *interrupt;
+    Progress *progress;
+    gint64 limit; /* monotonic time, µs */
+    char *facts;
+} Trial;
+
+static void abandon(gpointer user)
+{
+    Trial *t = user;
+    if (t->output)
+        output_discard(t->output);
+}
+
+static gboolean on_tick(const BatchState *now, gpointer user)
+{
+    Trial *t = user;
+    progress_part(t->progress, now->part, t->facts);
+    return interrupt_signal(t->interrupt) == 0 && g_get_monotonic_time() < t->limit;
+}
+
+static void tell(const BatchDef *def, uint64_t chosen, double seconds, uint64_t bytes)
+{
+    uint64_t mine = variants(def);
+    unsigned workers = (unsigned)MIN(mine, def->threads ? def->threads : g_get_num_processors());
+    char *size = g_format_size(bytes), *all = g_format_size(bytes * mine), *each = sweep_duration(seconds), *whole = sweep_duration(seconds * (double)mine / workers);
+    fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s of about %s and %s each (as number %" G_GUINT64_FORMAT ", grown for a trial): %s, %s on %u thread%s\n", mine, cli_s(mine),
+            size, each, chosen, all, whole, workers, cli_s(workers));
+    g_free(each);
+    g_free(whole);
+    g_free(size);
+    g_free(all);
+}
+
+/* Grows the variant in the middle. */
+static int try_one(const BatchDef *def, Trial *t)
+{
+    GError *error = NULL;
+    uint64_t mine = variants(def), middle = def->shard + mine / 2 * def->shards;
+    t->output = output_new(g_get_tmp_dir(), &error);
+    if (!t->output)
+        return run_report(error, FALSE);
+    t->facts = g_strdup_printf("  growing number %" G_GUINT64_FORMAT " for a trial", middle);
+    char *out = g_build_filename(output_staging(t->output), "out", NULL), *staging = g_build_filename(output_staging(t->output), "new", NULL);
+    BatchDef one = *def;
+    one.out = out;
+    one.staging = staging;
+    one.threads = 1;
+    one.shard = (uint32_t)middle;
+    one.shards = (uint32_t)sweep_count(def->sweep);
+    BatchState end;
+    gint64 begun = g_get_monotonic_time();
+    t->limit = begun + TRIAL_SECONDS * G_USEC_PER_SEC;
+    interrupt_polite(t->interrupt);
+    gboolean good = batch_run(&one, on_tick, t, &end, &error);
+    double seconds = (double)(g_get_monotonic_time() - begun) / G_USEC_PER_SEC;
+    interrupt_hold(t->interrupt);
+    progress_clear(t->progress);
+    int came = interrupt_signal(t->interrupt), status = 0;
+    if (came)
+        status = EXIT_SIGNAL + came;
+    else if (good && end.grown)
+        tell(def, middle, seconds, batch_bytes(&one, middle));
+    else if (good)
+        fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, failed\n", mine, cli_s(mine), middle);
+    else if (g_error_matches(error, G_IO_ERROR, G_IO_ERROR_CANCELLED))
+        fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, takes longer than %d s, so size and time are not known\n", mine,
+                cli_s(mine), middle, TRIAL_SECONDS);
+    else
+        status = run_report(g_steal_pointer(&error), FALSE);
+    g_clear_error(&error);
+    g_free(out);
+    g_free(staging);
+    return status;
+}
+
+static int estimate(const BatchDef *def)
+{
+    if (!variants(def)) {
+        fputs("no variant is in this part\n", stderr);
+        return 0;
+    }
+    Trial t = {0};
+    t.interrupt = interrupt_new(abandon, &t);
+    interrupt_hold(t.interrupt);
+    t.progress = progress_new("dry run");
+    int status = try_one(def, &t);
+    output_free(t.output);
+    progress_free(t.progress);
+    interrupt_free(t.interrupt);
+    g_free(t.facts);
+    return status;
+}
+
+int sweep_trial(const BatchDef *def, gboolean quiet)
+{
+    gboolean shown = isatty(STDOUT_FILENO);
+    int status = shown || quiet ? 0 : estimate(def);
+    if (status == 0 && !list(def, shown ? MOST_SHOWN : G_MAXUINT64))
+        status = EXIT_FAILED;
+    return status == 0 && shown && !quiet ? estimate(def) : status;
+}
