@@ -51,10 +51,10 @@ static void enter_all(const Painter *p, AreoleMap *m, bool fill)
                 enter(p, m, (Side){a->node[i], a->node[i + 1 < a->ring[r + 1] ? i + 1 : a->ring[r]], k + 1}, fill);
 }
 
-static AreoleMap *areole_map(Painter *p)
+void areole_map_ready(Painter *p)
 {
     if (p->areoles != NULL)
-        return p->areoles;
+        return;
     AreoleMap *m = p->areoles = g_new0(AreoleMap, 1);
     m->areoles = network_areoles(p->net);
     m->n_blocks = (p->rows + TILE - 1) / TILE;
@@ -64,7 +64,6 @@ static AreoleMap *areole_map(Painter *p)
         m->start[i + 1] += m->start[i];
     m->side = g_new(Side, (gsize)m->start[m->n_blocks] + 1);
     enter_all(p, m, true);
-    return m;
 }
 
 void areole_map_free(AreoleMap *m)
@@ -138,7 +137,8 @@ static void label_blocks(uint32_t first, uint32_t last, void *user)
 
 Plane *paint_areole(Painter *p)
 {
-    AreoleMap *m = areole_map(p);
+    areole_map_ready(p);
+    const AreoleMap *m = p->areoles;
     Labels l = {p, painter_plane(p, MAP_AREOLE), p->y0 / TILE};
     l.plane->high = MAX(m->areoles->n, 1);
     painter_cover(p);

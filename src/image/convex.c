@@ -49,10 +49,11 @@ static void rings_room(Rings *r, uint32_t points)
 }
 
 /* Points that all but coincide become one: the direction of an edge between them would be noise. There must be room. */
-static inline void rings_point(Rings *r, uint32_t start, Vec2 p)
+static inline Vec2 *put_point(const Vec2 *first, Vec2 *to, Vec2 p)
 {
-    if (r->n_v == start || !same(r->v[r->n_v - 1], p))
-        r->v[r->n_v++] = p;
+    if (to == first || !same(to[-1], p))
+        *to++ = p;
+    return to;
 }
 
 /* Closes the polygon made of the points since the last one; a polygon without area is dropped. */
@@ -99,24 +100,29 @@ static double ring_area(const Vec2 *v, uint32_t n)
     return 0.5 * fabs(sum);
 }
 
-/* The part of a polygon where p · normal <= bound. */
-static void clip(const Vec2 *v, uint32_t n, Vec2 normal, double bound, Rings *out)
+/* The part of a polygon where p · normal <= bound; `known`, unless it is NULL, has what p · normal - bound is at its points. */
+static inline void clip_known(const Vec2 *v, uint32_t n, Vec2 normal, double bound, const double *known, Rings *out)
 {
     rings_room(out, 2 * n); /* a polygon that is not convex may be cut at every edge */
-    uint32_t start = out->n_v;
-    Vec2 p = v[n - 1];
-    double dp = vec_dot(p, normal) - bound;
+    Vec2 *first = out->v + out->n_v, *to = first, p = v[n - 1];
+    double dp = known != NULL ? known[n - 1] : vec_dot(p, normal) - bound;
     for (uint32_t i = 0; i < n; i++) {
         Vec2 q = v[i];
-        double dq = vec_dot(q, normal) - bound;
+        double dq = known != NULL ? known[i] : vec_dot(q, normal) - bound;
         if ((dp > 0.0) != (dq > 0.0))
-            rings_point(out, start, vec_lerp(p, q, dp / (dp - dq)));
+            to = put_point(first, to, vec_lerp(p, q, dp / (dp - dq)));
         if (!(dq > 0.0))
-            rings_point(out, start, q);
+            to = put_point(first, to, q);
         p = q;
         dp = dq;
     }
+    out->n_v = (uint32_t)(to - out->v);
     rings_close(out);
+}
+
+static void clip(const Vec2 *v, uint32_t n, Vec2 normal, double bound, Rings *out)
+{
+    clip_known(v, n, normal, bound, NULL, out);
 }
 
 void ring_within(const Vec2 *v, uint32_t n, Box2 box, Rings *out, Rings *spare)
@@ -158,30 +164,40 @@ void union_reset(Union *u)
     rings_reset(&u->part);
 }
 
-/* Cuts the polygon in `ping` if the half-plane cuts it at all. FALSE when nothing is left. */
+/* Cuts the polygon in `ping`, which lies in the pixel 0 … 1, if the half-plane cuts it at all. FALSE when nothing is left. Many half-planes have all of the
+ * pixel on one side. */
 static bool cut(Union *u, Vec2 normal, double bound)
 {
-    bool cuts = false, leaves = false;
-    for (uint32_t i = 0; i < u->ping.n_v && !(cuts && leaves); i++) {
-        bool beyond = vec_dot(u->ping.v[i], normal) > bound;
-        cuts = cuts || beyond;
-        leaves = leaves || !beyond;
-    }
-    if (!cuts)
+    enum { FEW = 32 };
+    if (MAX(normal.x, 0.0) + MAX(normal.y, 0.0) < bound - nearby)
         return true;
-    rings_reset(&u->pong);
-    if (!leaves) {
+    if (MIN(normal.x, 0.0) + MIN(normal.y, 0.0) > bound + nearby) {
         rings_reset(&u->ping);
         return false;
     }
-    clip(u->ping.v, u->ping.n_v, normal, bound, &u->pong);
+    double beyond[FEW];
+    uint32_t n = u->ping.n_v, outside = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        double d = vec_dot(u->ping.v[i], normal) - bound;
+        outside += d > 0.0;
+        if (i < FEW)
+            beyond[i] = d;
+    }
+    if (outside == 0)
+        return true;
+    rings_reset(&u->pong);
+    if (outside == n) {
+        rings_reset(&u->ping);
+        return false;
+    }
+    clip_known(u->ping.v, n, normal, bound, n <= FEW ? beyond : NULL, &u->pong);
     Rings swap = u->ping;
     u->ping = u->pong;
     u->pong = swap;
     return u->ping.n > 0;
 }
 
-/* Sides of the regular polygon that stands for a disc: the area between it and the disc, along one pixel, stays below
+/* Sides, a power of two, of the regular polygon that stands for a disc: the area between it and the disc, along one pixel, stays below
  * about 1e-4; see also the radius in cut_disc. */
 static uint32_t disc_sides(double r)
 {
@@ -215,7 +231,7 @@ static bool cut_disc(Union *u, const Capsule *k, Vec2 own, double r, Vec2 other,
     uint32_t mid = far > 0.0 ? (nearest_direction(u->circle, to) + step / 2) / step : 0;
     for (uint32_t i = 0, missed = 0; i < n; i++) {
         /* from the middle to both sides in turn */
-        uint32_t at = (mid + (i % 2 != 0 ? n - (i + 1) / 2 : i / 2)) % n;
+        uint32_t at = (mid + (i % 2 != 0 ? n - (i + 1) / 2 : i / 2)) & (n - 1);
         Vec2 normal = dir[at * step];
         if (vec_dot(to, normal) + 0.7072 < r * dent) {
             if (++missed == 2)

@@ -120,7 +120,7 @@ static void survey(Painter *p)
 /* Sides of holes come after those of the margin. */
 static void take_holes(Painter *p)
 {
-    const Holes *h = p->style.holes;
+    const Holes *h = p->net->holes;
     for (uint32_t k = 0; h != NULL && k < h->n; k++)
         for (uint32_t i = h->start[k]; i < h->start[k + 1]; i++) {
             uint32_t next = i + 1 < h->start[k + 1] ? i + 1 : h->start[k];
@@ -131,7 +131,7 @@ static void take_holes(Painter *p)
 static void take_margin(Painter *p)
 {
     const Polygon *m = p->net->margin;
-    const Holes *h = m != NULL ? p->style.holes : NULL;
+    const Holes *h = m != NULL ? p->net->holes : NULL;
     p->n_margin = p->n_edges = m != NULL ? m->n : 0;
     p->margin = g_new(Vec2, p->n_margin + 1);
     p->edge = g_new(Capsule, p->n_margin + (h != NULL ? h->start[h->n] : 0) + 1);
@@ -312,8 +312,36 @@ void painter_tiles(Painter *p, const Bins *bins, uint32_t from, LoopFn fn, void 
         pool_for(p->pool, last - first, 8, run_tiles, &loop);
 }
 
+/* What the leaf as a whole gives to maps, longest to make first. */
+enum { READY_AREOLES, READY_STROKES, READY_RIDGES, N_READY };
+
+static void make_ready(uint32_t first, uint32_t last, void *user)
+{
+    Painter *p = user;
+    bool shaped = false;
+    for (int i = MAP_BASE_COLOR; i <= MAP_THICKNESS; i++)
+        shaped = shaped || (p->expected[i] && i != MAP_OPACITY);
+    for (uint32_t i = first; i < last; i++)
+        if (i == READY_AREOLES && p->expected[MAP_AREOLE])
+            areole_map_ready(p);
+        else if (i == READY_STROKES && (shaped || p->expected[MAP_VEIN_MASK] || p->expected[MAP_VEIN_ORDER]))
+            painter_strokes(p);
+        else if (i == READY_RIDGES && shaped)
+            painter_ridges_ready(p);
+}
+
+/* Each of these is made by one thread; so they are made side by side, when it is known what will be needed. */
+static void get_ready(Painter *p)
+{
+    if (p->ready)
+        return;
+    p->ready = true;
+    pool_for(p->pool, N_READY, 1, make_ready, p);
+}
+
 Plane *painter_paint(Painter *p, MapId id)
 {
+    get_ready(p);
     switch (id) {
     case MAP_OPACITY:
     case MAP_VEIN_MASK:

@@ -2,7 +2,6 @@
 #ifndef IMAGE_PAINT_H
 #define IMAGE_PAINT_H
 
-#include "geom/holes.h"
 #include "geom/vec.h"
 #include "image/photo.h"
 #include "image/plane.h"
@@ -60,7 +59,6 @@ typedef struct {
     const Network *reference; /* network whose widths, density and steps set the scale of values and colours, so that frames of
                                * one run compare; NULL: the painted one's own. Outlives the painter. */
     const Photo *photo[2];    /* colours of the sunny and the shadow side instead of painted ones; NULL: painted. Outlive the painter. */
-    const Holes *holes;       /* of the blade, segments; NULL: none. Outlive the painter. */
 } PaintStyle;
 
 PaintStyle paint_style_default(void);

@@ -59,6 +59,7 @@ struct Painter {
     bool has_noise;
 
     bool expected[MAP_COUNT]; /* maps that will be asked for, see painter_expect */
+    bool ready;               /* what they need of the leaf as a whole is there */
     Plane *kept[MAP_COUNT];   /* painted along with others, not asked for yet */
 
     Field cover;   /* part of the pixel covered by veins within the blade */
@@ -83,6 +84,7 @@ const float *painter_away(Painter *p);
 const float *painter_inset(Painter *p);
 const float *painter_arch(Painter *p);
 void painter_relief(Painter *p); /* bulge, crease and nearness */
+void painter_ridges_ready(Painter *p); /* what it needs of the leaf as a whole */
 void painter_noise(Painter *p);
 
 /* Rows around the painted ones that the arch depends on, pixels. */
@@ -139,6 +141,7 @@ Plane *paint_look(Painter *p, MapId id);
 
 /* Areoles (areole.c). */
 Plane *paint_areole(Painter *p);
+void areole_map_ready(Painter *p);
 void areole_map_free(AreoleMap *m);
 
 /* A plane for the painted rows of a map, with its kind, unit and range. */

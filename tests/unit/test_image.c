@@ -436,6 +436,32 @@ static void test_deflate_pieces(void)
     g_free(out);
 }
 
+/* Matches of every length up to where a second one is needed and a third, and every distance about where symbols and the window change. */
+static void test_deflate_matches(void)
+{
+    enum { MOST = 200000 };
+    uint8_t *in = g_malloc(MOST), *out = g_malloc(2 * MOST);
+    Deflate *d = deflate_new();
+    for (uint32_t at = 0, i = 0; at < MOST; i++) { /* runs of one byte, of all lengths, between which there is no pattern */
+        uint32_t run = MIN(i % 800, MOST - at);
+        memset(in + at, (int)(i * 2654435761u >> 24), run);
+        at += run;
+    }
+    gsize packed = deflate_whole(d, in, MOST, out, 2 * MOST);
+    assert_inflates(out, packed, in, MOST);
+    for (uint32_t far = 1; far < 40000; far = far * 5 / 4 + 1)
+        for (int off = -1; off <= 1; off++) {
+            uint32_t distance = (uint32_t)MAX((int)(far > 32000 && far < 33000 ? 32768 : 1u << (31 - __builtin_clz(far))) + off, 1);
+            fill_bytes(in, 2 * distance + 500, 0);
+            memcpy(in + distance + 100, in + 100, MIN(distance, 400u));
+            packed = deflate_whole(d, in, 2 * distance + 500, out, 2 * MOST);
+            assert_inflates(out, packed, in, 2 * distance + 500);
+        }
+    deflate_free(d);
+    g_free(in);
+    g_free(out);
+}
+
 /* Files with many IDAT chunks, of noise, of one value, and of one and then the other. */
 static void test_large(void)
 {
@@ -581,6 +607,7 @@ int main(int argc, char **argv)
     g_test_add_func("/image/exr/labels", test_exr_labels);
     g_test_add_func("/image/deflate/whole", test_deflate);
     g_test_add_func("/image/deflate/pieces", test_deflate_pieces);
+    g_test_add_func("/image/deflate/matches", test_deflate_matches);
     g_test_add_func("/image/large", test_large);
     g_test_add_func("/image/same-bytes", test_same_bytes);
     g_test_add_func("/image/banded", test_banded);
