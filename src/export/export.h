@@ -14,7 +14,7 @@
 gboolean export_svg(const Network *net, const Frame *frame, const PaintStyle *style, const char *title, const char *path, GError **error);
 
 /* GraphML that igraph and NetworkX read as it is: node x, y, birth; edge kind, order, rank, width, flow, birth, vein, length;
- * graph margin ("x,y x,y …", counter-clockwise; only if there is one), base and tip ("x,y"; only if the length is known) and steps. Nodes are numbered as in the tables. Lengths are rounded to
+ * graph margin ("x,y x,y …", counter-clockwise; only if there is one), holes (such points, clockwise, with ";" between holes; only if there are any), base and tip ("x,y"; only if the length is known) and steps. Nodes are numbered as in the tables. Lengths are rounded to
  * millionths of a segment, here and there. import/import.h reads it back: what was read writes the same bytes again. */
 gboolean export_graphml(const Network *net, const char *path, GError **error);
 

@@ -38,16 +38,30 @@ static double edge_length(const Network *net, uint32_t e)
     return vec_dist(vec2(rounded(a.x), rounded(a.y)), vec2(rounded(b.x), rounded(b.y)));
 }
 
+static void put_points(GString *s, const Vec2 *p, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        if (i > 0)
+            g_string_append_c(s, ' ');
+        sink_millionths(s, p[i].x);
+        g_string_append_c(s, ',');
+        sink_millionths(s, p[i].y);
+    }
+}
+
 static void put_graph(const Network *net, GString *s)
 {
     if (net->margin != NULL) {
         PUT(s, "<data key=\"m\">");
-        for (uint32_t i = 0; i < net->margin->n; i++) {
-            if (i > 0)
-                g_string_append_c(s, ' ');
-            sink_millionths(s, net->margin->v[i].x);
-            g_string_append_c(s, ',');
-            sink_millionths(s, net->margin->v[i].y);
+        put_points(s, net->margin->v, net->margin->n);
+        PUT(s, "</data>\n");
+    }
+    if (net->holes != NULL) {
+        PUT(s, "<data key=\"h\">");
+        for (uint32_t k = 0; k < net->holes->n; k++) {
+            if (k > 0)
+                PUT(s, "; ");
+            put_points(s, net->holes->p + net->holes->start[k], net->holes->start[k + 1] - net->holes->start[k]);
         }
         PUT(s, "</data>\n");
     }
@@ -115,6 +129,8 @@ gboolean export_graphml(const Network *net, const char *path, GError **error)
     for (gsize i = 0; i < G_N_ELEMENTS(keys); i++)
         g_string_append_printf(out->text, "<key id=\"%s\" for=\"%s\" attr.name=\"%s\" attr.type=\"%s\"/>\n", keys[i].id,
                                keys[i].domain, keys[i].name, keys[i].type);
+    if (net->holes != NULL)
+        g_string_append(out->text, "<key id=\"h\" for=\"graph\" attr.name=\"holes\" attr.type=\"string\"/>\n");
     g_string_append(out->text, "<graph id=\"venation\" edgedefault=\"directed\">\n");
     put_graph(net, out->text);
     for (uint32_t i = 0; i < net->n_nodes; i++) {

@@ -224,7 +224,7 @@ static void put_order(const Network *net, const PaintStyle *style, const Sorted 
     g_free(runs);
 }
 
-static void put_blade(const Polygon *margin, const PaintStyle *style, Sink *out)
+static void put_blade(const Polygon *margin, const Holes *holes, const PaintStyle *style, Sink *out)
 {
     if (margin == NULL)
         return;
@@ -241,10 +241,10 @@ static void put_blade(const Polygon *margin, const PaintStyle *style, Sink *out)
         sink_drain(out);
     }
     g_string_append_c(out->text, 'Z');
-    for (uint32_t k = 0; style->holes != NULL && k < style->holes->n; k++) { /* clockwise, so that they are holes by either rule of filling */
-        for (uint32_t i = style->holes->start[k]; i < style->holes->start[k + 1]; i++) {
-            g_string_append_c(out->text, i == style->holes->start[k] ? 'M' : ' ');
-            put_point(out->text, style->holes->p[i]);
+    for (uint32_t k = 0; holes != NULL && k < holes->n; k++) { /* clockwise, so that they are holes by either rule of filling */
+        for (uint32_t i = holes->start[k]; i < holes->start[k + 1]; i++) {
+            g_string_append_c(out->text, i == holes->start[k] ? 'M' : ' ');
+            put_point(out->text, holes->p[i]);
         }
         g_string_append_c(out->text, 'Z');
     }
@@ -280,7 +280,7 @@ gboolean export_svg(const Network *net, const Frame *frame, const PaintStyle *st
     if (out == NULL)
         return FALSE;
     put_head(net, frame, title, out->text);
-    put_blade(net->margin, style, out);
+    put_blade(net->margin, net->holes, style, out);
     /* veins end at the margin */
     g_string_append_printf(out->text, "<g id=\"veins\" inkscape:groupmode=\"layer\" inkscape:label=\"Veins\"%s>\n",
                            net->margin != NULL ? " clip-path=\"url(#inside)\"" : "");

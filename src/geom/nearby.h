@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "geom/neighbours.h"
+#include "geom/vectors.h"
 
 /* A node as seen from s. */
 typedef struct {
@@ -28,6 +29,33 @@ static inline Box2 square_box(QuadSquare q)
     double half = quadtree_reach(q);
     return (Box2){q.centre.x - half, q.centre.y - half, q.centre.x + half, q.centre.y + half};
 }
+
+/* ---- four squares at a time ---- */
+
+#define FOUR_GAP(from, reach) FOUR_PICK(FOUR_ABS(from) > (reach), FOUR_ABS(from) - (reach), FOUR(0.0))
+
+/* Squares beside each other: the quadrants of one. */
+typedef struct {
+    Four x, y, reach, near2; /* centres; quadtree_reach; squared distances from s */
+} FourSquares;
+
+static inline __attribute__((always_inline)) void four_quadrants(QuadSquare q, FourSquares *c)
+{
+    double h = q.half * 0.5;
+    c->x = FOUR(q.centre.x) + (Four){-h, h, -h, h};
+    c->y = FOUR(q.centre.y) + (Four){-h, -h, h, h};
+    c->reach = FOUR(quadtree_reach((QuadSquare){.half = h}));
+}
+
+/* ---- lune.c ---- */
+
+/* A node that excludes x, so one in the lune of s and x; FALSE when there is none. With `clear` given, nothing nearer to s than x lies within
+ * the disc around clear->p through s, and what lies wholly in there need not be searched: mostly the crowded part, around x itself. */
+bool lune_search(const Field *f, Vec2 s, const Neighbour *x, const Neighbour *clear, Neighbour *found);
+
+/* Must all that excludes x lie in the lune of s and its old neighbour m, which is farther off? FALSE: perhaps not. Nothing is nearer to s than
+ * near2 (squared). */
+bool lune_inherited(Vec2 s, const Neighbour *x, const Neighbour *m, double near2);
 
 /* ---- the walk: squares and points in order of (distance from s, squares first, index) ---- */
 

@@ -6,8 +6,9 @@
 
 enum { MAX_THREADS = 256 };
 
-/* A worker that finds nothing to do looks this many times before it sleeps: some tens of microseconds, about what waking it costs. */
-enum { PATIENCE = 1500 };
+/* One that waits looks some times before it sleeps, at most for about what waking it costs twice over; where that was in vain because the wait
+ * was long, as it is where others want the processors, it looks less often the next time. */
+enum { PATIENCE_LEAST = 64, PATIENCE_MOST = 4096, PATIENCE_SHORT = 300 /* a wait in microseconds that is better looked through */ };
 
 static const unsigned open_bit = 1u << 31;
 
@@ -22,11 +23,12 @@ struct Pool {
     atomic_bool quit;
     /* sleep */
     atomic_uint asleep;
+    atomic_bool caller_asleep;
     GMutex mutex;
-    GCond wake;
+    GCond wake, empty; /* empty: nobody is inside any more */
     GThread *worker[MAX_THREADS];
     unsigned n_workers, most_workers;
-    unsigned patience;
+    unsigned most_patience, patience; /* patience: the caller's */
 };
 
 static inline void breathe(void)
@@ -57,30 +59,51 @@ static inline bool has_loop(Pool *p, unsigned done)
     return (atomic_load(&p->gate) & open_bit) && atomic_load(&p->turn) != done;
 }
 
-/* Waits for a loop other than number `done`; FALSE when the pool ends. */
-static bool wait_for_loop(Pool *p, unsigned done)
+/* After a sleep since `start`. */
+static void learn(const Pool *p, gint64 start, unsigned *patience)
 {
-    for (unsigned i = 0; i < p->patience; i++) {
+    if (g_get_monotonic_time() - start < PATIENCE_SHORT)
+        *patience = p->most_patience;
+    else
+        *patience = MIN(MAX(*patience / 2, PATIENCE_LEAST), p->most_patience);
+}
+
+/* Waits for a loop other than number `done`; FALSE when the pool ends. */
+static bool wait_for_loop(Pool *p, unsigned done, unsigned *patience)
+{
+    for (unsigned i = 0; i < *patience; i++) {
         if (atomic_load(&p->quit))
             return false;
         if (has_loop(p, done))
             return true;
         breathe();
     }
+    gint64 start = g_get_monotonic_time();
     g_mutex_lock(&p->mutex);
     atomic_fetch_add(&p->asleep, 1); /* before the last look: pool_for opens the gate, then looks for sleepers */
     while (!atomic_load(&p->quit) && !has_loop(p, done))
         g_cond_wait(&p->wake, &p->mutex);
     atomic_fetch_sub(&p->asleep, 1);
     g_mutex_unlock(&p->mutex);
+    learn(p, start, patience);
     return !atomic_load(&p->quit);
+}
+
+/* The last one out wakes the caller, who has shut the gate. */
+static void leave(Pool *p)
+{
+    if (atomic_fetch_sub(&p->gate, 1) != 1 || !atomic_load(&p->caller_asleep))
+        return;
+    g_mutex_lock(&p->mutex);
+    g_cond_signal(&p->empty);
+    g_mutex_unlock(&p->mutex);
 }
 
 static gpointer work(gpointer data)
 {
     Pool *p = data;
-    unsigned done = 0;
-    while (wait_for_loop(p, done)) {
+    unsigned done = 0, patience = p->most_patience;
+    while (wait_for_loop(p, done, &patience)) {
         unsigned gate = atomic_load(&p->gate);
         while ((gate & open_bit) && !atomic_compare_exchange_weak(&p->gate, &gate, gate + 1))
             ;
@@ -88,7 +111,7 @@ static gpointer work(gpointer data)
             continue; /* too late: it has been shut meanwhile */
         done = atomic_load(&p->turn);
         run_parts(p);
-        atomic_fetch_sub(&p->gate, 1);
+        leave(p);
     }
     return NULL;
 }
@@ -101,9 +124,10 @@ Pool *pool_new(unsigned threads)
     unsigned processors = g_get_num_processors();
     threads = MIN(threads ? threads : processors, MAX_THREADS);
     p->most_workers = threads - 1;
-    p->patience = threads <= processors ? PATIENCE : 0; /* else the one that looks keeps out the one that works */
+    p->most_patience = p->patience = threads <= processors ? PATIENCE_MOST : 0; /* else the one that looks keeps out the one that works */
     g_mutex_init(&p->mutex);
     g_cond_init(&p->wake);
+    g_cond_init(&p->empty);
     return p;
 }
 
@@ -119,6 +143,7 @@ void pool_free(Pool *p)
         g_thread_join(p->worker[i]);
     g_mutex_clear(&p->mutex);
     g_cond_clear(&p->wake);
+    g_cond_clear(&p->empty);
     g_free(p);
 }
 
@@ -151,11 +176,19 @@ static void open_gate(Pool *p)
 static void shut_gate(Pool *p)
 {
     atomic_fetch_and(&p->gate, ~open_bit);
-    for (unsigned i = 0; atomic_load(&p->gate) != 0; i++) {
+    for (unsigned i = 0; i < p->patience; i++) {
+        if (atomic_load(&p->gate) == 0)
+            return;
         breathe();
-        if (i >= p->patience)
-            g_thread_yield();
     }
+    gint64 start = g_get_monotonic_time();
+    g_mutex_lock(&p->mutex);
+    atomic_store(&p->caller_asleep, true); /* before the last look: the last one out counts itself out, then looks for a sleeper */
+    while (atomic_load(&p->gate) != 0)
+        g_cond_wait(&p->empty, &p->mutex);
+    atomic_store(&p->caller_asleep, false);
+    g_mutex_unlock(&p->mutex);
+    learn(p, start, &p->patience);
 }
 
 void pool_for(Pool *p, uint32_t n, uint32_t grain, LoopFn fn, void *user)

@@ -8,7 +8,7 @@
 typedef void (*LoopFn)(uint32_t first, uint32_t last, void *user);
 
 /* Threads kept ready for one loop after another. They start with the first loop that has work for them, and sleep when none has come
- * for some microseconds. */
+ * for some microseconds: fewer where more threads are at work than there are processors. */
 typedef struct Pool Pool;
 
 /* `threads` of them (0: all processors), the caller's among them. */

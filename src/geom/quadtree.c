@@ -92,6 +92,19 @@ void quadtree_add(Quadtree *t, Vec2 p, uint32_t i)
     put(t, q.node, p, i);
 }
 
+QuadSquare quadtree_around(const Quadtree *t, Box2 b)
+{
+    QuadSquare q = quadtree_root(t);
+    b = box_grow(b, 1e-12 * (t->half + fabs(t->centre.x) + fabs(t->centre.y))); /* its sides are rounded */
+    while (t->node[q.node].child) {
+        bool right = b.x0 >= q.centre.x, above = b.y0 >= q.centre.y;
+        if ((!right && b.x1 >= q.centre.x) || (!above && b.y1 >= q.centre.y))
+            break;
+        q = quadtree_quadrant(t, q, (right ? 1u : 0u) | (above ? 2u : 0u));
+    }
+    return q;
+}
+
 uint32_t quadtree_nearest(const Quadtree *t, Vec2 p, double bound2, PointFilter filter, const void *user, double *d2)
 {
     uint32_t best = NO_POINT;
@@ -129,10 +142,10 @@ uint32_t quadtree_nearest(const Quadtree *t, Vec2 p, double bound2, PointFilter 
 
 bool quadtree_any_within(const Quadtree *t, Vec2 p, double r)
 {
-    double r2 = r * r;
+    double r2 = r * r, wide = r * (1.0 + 1e-9);
     QuadSquare stack[QUAD_STACK];
     unsigned depth = 0;
-    stack[depth++] = quadtree_root(t);
+    stack[depth++] = quadtree_around(t, (Box2){p.x - wide, p.y - wide, p.x + wide, p.y + wide});
     while (depth) {
         QuadSquare q = stack[--depth];
         if (t->node[q.node].child) {

@@ -68,6 +68,9 @@ static inline double quadtree_square_dist2(QuadSquare q, Vec2 p)
     return dx * dx + dy * dy;
 }
 
+/* A small square that holds all points in the box. O(log n). */
+QuadSquare quadtree_around(const Quadtree *t, Box2 box);
+
 /* Says whether point i may be seen; NULL means all may. */
 typedef bool (*PointFilter)(const void *user, uint32_t i);
 

@@ -70,57 +70,6 @@ static bool view_excludes(const View *v, const Neighbour *x)
     return excluded_by_any(v->m, v->n, x) || excluded_by_any(v->w, v->n_witnesses, x);
 }
 
-/* ---- is a lune empty? ---- */
-
-/* Squared distance from p to the farthest point of the square. */
-static double square_far2(QuadSquare q, Vec2 p)
-{
-    double half = quadtree_reach(q), dx = fabs(p.x - q.centre.x) + half, dy = fabs(p.y - q.centre.y) + half;
-    return dx * dx + dy * dy;
-}
-
-/* A node that excludes x, so one in the lune of s and x; FALSE when there is none. With `clear` given, nothing nearer to s than x lies within
- * the disc around clear->p through s, and what lies wholly in there need not be searched: mostly the crowded part, around x itself. */
-static bool lune_search(const Field *f, Vec2 s, const Neighbour *x, const Neighbour *clear, Neighbour *found)
-{
-    QuadSquare stack[QUAD_STACK];
-    unsigned depth = 0;
-    stack[depth++] = quadtree_root(f->tree);
-    while (depth) {
-        QuadSquare q = stack[--depth];
-        const QuadNode *n = &f->tree->node[q.node];
-        if (n->child) {
-            for (unsigned k = 0; k < 4; k++) {
-                QuadSquare c = quadtree_quadrant(f->tree, q, k);
-                if (quadtree_square_dist2(c, x->p) <= x->d2 && quadtree_square_dist2(c, s) <= x->d2 &&
-                    !(clear && square_far2(c, clear->p) < clear->d2 * (1.0 - 1e-9)))
-                    stack[depth++] = c;
-            }
-            continue;
-        }
-        for (uint32_t b = n->bucket; b != NO_POINT; b = f->tree->bucket[b].next) {
-            const QuadBucket *k = &f->tree->bucket[b];
-            for (uint32_t j = 0; j < k->count; j++) {
-                *found = (Neighbour){k->p[j], vec_dist2(s, k->p[j]), k->i[j]};
-                if (found->v != x->v && excludes(found, x) && (!f->sees || f->sees(f->user, found->v)))
-                    return true;
-            }
-        }
-    }
-    return false;
-}
-
-/* Must all that excludes x, at places relative to s, lie in the lune of s and its old neighbour m, which is farther off? The discs around x
- * and m through s both leave out less than the disc around any point c beyond x on the line from m through x: q² <= 2 q·x and q² > 2 q·m
- * give q·(x - m) > 0 and so q² <= 2 q·c. With c at the foot of the perpendicular from s, |q| is at most twice its length h; and there is
- * nothing nearer than near2. The second term covers what rounding does to the premises. Mostly x is the child of m, growing towards s. */
-static bool lune_inherited(Vec2 s, const Neighbour *x, const Neighbour *m, double near2)
-{
-    Vec2 w = vec_sub(x->p, m->p), a = vec_sub(s, m->p);
-    double along = vec_dot(a, w), w2 = vec_norm2(w), cross = vec_cross(a, w);
-    return along >= w2 && 4.04 * cross * cross + 1e-11 * along * m->d2 < near2 * w2;
-}
-
 /* ---- the zone ---- */
 
 enum { ZONE_CORNERS = 4 + HOOD_MAX + HOOD_WITNESSES };
@@ -198,17 +147,38 @@ static bool view_open(const View *v, Box2 b, double near2)
     return true;
 }
 
+/* Which of four squares does a node shut? */
+static inline __attribute__((always_inline)) void four_shut(const Neighbour *x, Vec2 s, const FourSquares *q, FourMask *shut)
+{
+    Vec2 u = vec_sub(x->p, s);
+    Four ex = u.x > 0 ? -q->reach : q->reach, ey = u.y > 0 ? -q->reach : q->reach;
+    Four least = (q->x + ex - FOUR(s.x)) * FOUR(u.x) + (q->y + ey - FOUR(s.y)) * FOUR(u.y);
+    *shut |= (q->near2 > FOUR(x->d2)) & (FOUR(2.0) * least > FOUR(x->d2 * (1.0 + 1e-9)) + FOUR(1e-9) * FOUR_ABS(least));
+}
+
+/* Pushes the quadrants that the nodes found so far do not shut. */
+static FOUR_WIDE void open_quadrants(Heap *heap, const Field *f, const View *v, QuadSquare q)
+{
+    FourSquares c = {0};
+    FourMask shut = FOUR_MASK(0);
+    four_quadrants(q, &c);
+    Four dx = FOUR_GAP(c.x - FOUR(v->s.x), c.reach), dy = FOUR_GAP(c.y - FOUR(v->s.y), c.reach);
+    c.near2 = dx * dx + dy * dy;
+    for (uint32_t i = 0; i < v->n; i++)
+        four_shut(&v->m[i], v->s, &c, &shut);
+    for (uint32_t i = 0; i < v->n_witnesses; i++)
+        four_shut(&v->w[i], v->s, &c, &shut);
+    for (unsigned k = 0; k < 4; k++)
+        if (!shut[k])
+            push_square(heap, quadtree_quadrant(f->tree, q, k), c.near2[k]);
+}
+
 /* Pushes what a square holds and what the nodes found so far do not exclude. */
 static void open_square(Heap *heap, const Field *f, const View *v, QuadSquare q)
 {
     const QuadNode *n = &f->tree->node[q.node];
     if (n->child) {
-        for (unsigned k = 0; k < 4; k++) {
-            QuadSquare c = quadtree_quadrant(f->tree, q, k);
-            double d2 = quadtree_square_dist2(c, v->s);
-            if (view_open(v, square_box(c), d2))
-                push_square(heap, c, d2);
-        }
+        open_quadrants(heap, f, v, q);
         return;
     }
     for (uint32_t b = n->bucket; b != NO_POINT; b = f->tree->bucket[b].next) {
@@ -318,10 +288,12 @@ static bool outdone(const Candidates *c, uint32_t k)
     return false;
 }
 
-/* Does one of a few candidates so far, the nearest among them, exclude x? Mostly one of these does if any, and the list stays short. */
+enum { GUARDS = 8 };
+
+/* Does one of some candidates so far, the nearest among them, exclude x? Mostly one of these does if any, and the list stays short. */
 static bool outdone_by_few(const Candidates *c, const Neighbour *x)
 {
-    for (uint32_t i = 0; i < MIN(c->n, 4); i++)
+    for (uint32_t i = 0; i < MIN(c->n, GUARDS); i++)
         if (excludes(&c->at[i].x, x))
             return true;
     return false;
@@ -349,28 +321,40 @@ static void consider(const View *h, const Field *f, uint32_t v, Candidates *c)
     candidate_add(c, x, out);
 }
 
-/* Might a point of the box be a neighbour, or, lying in a lune, exclude one? */
-static bool box_matters(const View *h, Box2 b)
+/* Might a point of the box, whose squared distance from s is near2, be a neighbour, or, lying in a lune, exclude one? */
+static bool box_matters(const View *h, const Candidates *c, Box2 b, double near2)
 {
-    double near2 = box_dist2(b, h->s);
     for (uint32_t i = 0; i < h->n; i++)
         if (near2 <= h->m[i].d2 && box_dist2(b, h->m[i].p) <= h->m[i].d2)
             return true;
+    for (uint32_t i = 0; i < MIN(c->n, GUARDS); i++)
+        if (shuts(&c->at[i].x, h->s, b, near2))
+            return false;
     return view_open(h, b, near2);
 }
 
 static void look_at_fresh(const View *h, const Field *f, const Boxtree *fresh, Candidates *c)
 {
-    uint32_t stack[BOXTREE_DEPTH], depth = 0;
-    stack[depth++] = 0;
+    struct {
+        uint32_t node;
+        double near2;
+    } stack[BOXTREE_DEPTH];
+    uint32_t depth = 0;
+    stack[depth].near2 = box_dist2(fresh->node[0].box, h->s);
+    stack[depth++].node = 0;
     while (depth) {
-        uint32_t k = stack[--depth];
+        uint32_t k = stack[--depth].node;
         const BoxNode *n = &fresh->node[k];
-        if (!box_matters(h, n->box))
+        if (!box_matters(h, c, n->box, stack[depth].near2))
             continue;
-        if (n->right) {
-            stack[depth++] = n->right;
-            stack[depth++] = k + 1;
+        if (n->right) { /* the nearer one first: what it holds may exclude all of the other */
+            double left2 = box_dist2(fresh->node[k + 1].box, h->s), right2 = box_dist2(fresh->node[n->right].box, h->s);
+            uint32_t left_at = depth + (left2 <= right2), right_at = depth + (left2 > right2);
+            stack[left_at].node = k + 1;
+            stack[left_at].near2 = left2;
+            stack[right_at].node = n->right;
+            stack[right_at].near2 = right2;
+            depth += 2;
             continue;
         }
         for (uint32_t i = n->first; i < n->first + n->count; i++)

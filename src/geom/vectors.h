@@ -7,6 +7,8 @@
 
 typedef double Four __attribute__((vector_size(32)));
 typedef int64_t FourMask __attribute__((vector_size(32))); /* of a comparison: all ones or 0 */
+typedef uint32_t FourNodes __attribute__((vector_size(16)));
+typedef int64_t TwoMask __attribute__((vector_size(16)));
 
 /* A function with loops over them: compiled twice where the loader can choose. Not with fused multiply-add, whose bits are others. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
@@ -18,6 +20,18 @@ typedef int64_t FourMask __attribute__((vector_size(32))); /* of a comparison: a
 
 #define FOUR(v) ((Four){(v), (v), (v), (v)})
 #define FOUR_PICK(mask, a, b) ((Four)(((FourMask)(a) & (mask)) | ((FourMask)(b) & ~(mask))))
-#define FOUR_ANY(mask) ((((mask)[0] | (mask)[1]) | ((mask)[2] | (mask)[3])) != 0)
+#define FOUR_ABS(a) ((Four)((FourMask)(a) & FOUR_MASK(INT64_MAX)))
+#define FOUR_MASK(v) ((FourMask){(v), (v), (v), (v)})
+
+static inline __attribute__((always_inline)) int four_any(const FourMask *m)
+{
+    TwoMask two = __builtin_shufflevector(*m, *m, 0, 1) | __builtin_shufflevector(*m, *m, 2, 3);
+    return (two[0] | two[1]) != 0;
+}
+#define FOUR_ANY(mask)          \
+    ({                          \
+        FourMask any_ = (mask); \
+        four_any(&any_);        \
+    })
 
 #endif

@@ -31,6 +31,7 @@ static const struct {
     [FIELD_FLOW] = {DOMAIN_EDGE, "flow", REAL, 1e-305, 1e305, "a number above 0"},
     [FIELD_BIRTH] = {DOMAIN_EDGE, "birth", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
     [FIELD_MARGIN] = {DOMAIN_GRAPH, "margin", POINTS, -FIELD_LARGEST, FIELD_LARGEST, "points x,y x,y … of numbers from -1e9 to 1e9, in segments"},
+    [FIELD_HOLES] = {DOMAIN_GRAPH, "holes", POINTS, -FIELD_LARGEST, FIELD_LARGEST, "points x,y x,y … of numbers from -1e9 to 1e9, in segments, with ';' between holes"},
     [FIELD_BASE] = {DOMAIN_GRAPH, "base", POINT, -FIELD_LARGEST, FIELD_LARGEST, "a point x,y of numbers from -1e9 to 1e9, in segments"},
     [FIELD_TIP] = {DOMAIN_GRAPH, "tip", POINT, -FIELD_LARGEST, FIELD_LARGEST, "a point x,y of numbers from -1e9 to 1e9, in segments"},
     [FIELD_STEPS] = {DOMAIN_GRAPH, "steps", WHOLE, 0, LARGEST_INT, "a whole number from 0 to 2147483647"},
@@ -139,7 +140,7 @@ gboolean field_point(FieldId field, const char *text, gsize length, Vec2 *out, G
 static bool same(Vec2 a, Vec2 b) { return rint(a.x * 1e6) == rint(b.x * 1e6) && rint(a.y * 1e6) == rint(b.y * 1e6); }
 
 /* All points of the text; NULL with an error for one that is none. */
-static GArray *parse_points(const char *text, gsize length, GError **error)
+static GArray *parse_points(FieldId field, const char *text, gsize length, GError **error)
 {
     GArray *points = g_array_new(FALSE, FALSE, sizeof(Vec2));
     const char *end = text + length;
@@ -150,8 +151,8 @@ static GArray *parse_points(const char *text, gsize length, GError **error)
         Vec2 p;
         if (stop > at && !parse_point(at, stop, &p)) {
             char *bare = g_strndup(at, (gsize)(stop - at)), *found = names_quote(bare);
-            g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_SYNTAX, "margin has the point %s; it must be %s", found,
-                        fields[FIELD_MARGIN].allowed);
+            g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_SYNTAX, "%s has the point %s; it must be %s", fields[field].name, found,
+                        fields[field].allowed);
             g_free(found);
             g_free(bare);
             g_array_unref(points);
@@ -199,6 +200,39 @@ Polygon *field_outline(GArray *points, GError **error)
 
 Polygon *field_margin(const char *text, gsize length, GError **error)
 {
-    GArray *points = parse_points(text, length, error);
+    GArray *points = parse_points(FIELD_MARGIN, text, length, error);
     return points != NULL ? field_outline(points, error) : NULL;
+}
+
+/* One hole. FALSE when it has a point that is none, or fewer than three different ones. */
+static gboolean add_hole(Holes *h, const char *text, gsize length, GError **error)
+{
+    GArray *points = parse_points(FIELD_HOLES, text, length, error);
+    if (points == NULL)
+        return FALSE;
+    leave_out_repeated(points);
+    gboolean ok = points->len >= 3;
+    if (ok)
+        holes_add(h, (const Vec2 *)(gpointer)points->data, points->len);
+    else
+        g_set_error(error, IMPORT_ERROR, IMPORT_ERROR_GRAPH, "hole %u of holes has %u different point%s; a hole needs at least 3", h->n + 1, points->len,
+                    points->len == 1 ? "" : "s");
+    g_array_unref(points);
+    return ok;
+}
+
+Holes *field_holes(const char *text, gsize length, GError **error)
+{
+    Holes *h = holes_new();
+    const char *end = text + length;
+    for (const char *at = text; at < end;) {
+        const char *stop = memchr(at, ';', (gsize)(end - at));
+        stop = stop != NULL ? stop : end;
+        if (!add_hole(h, at, (gsize)(stop - at), error)) {
+            holes_free(h);
+            return NULL;
+        }
+        at = stop + 1;
+    }
+    return h;
 }

@@ -4,6 +4,7 @@
 
 #include <glib.h>
 
+#include "geom/holes.h"
 #include "geom/polygon.h"
 
 typedef enum { DOMAIN_NODE, DOMAIN_EDGE, DOMAIN_GRAPH, DOMAIN_COUNT } Domain;
@@ -20,6 +21,7 @@ typedef enum {
     FIELD_FLOW,
     FIELD_BIRTH,
     FIELD_MARGIN,
+    FIELD_HOLES,
     FIELD_BASE,
     FIELD_TIP,
     FIELD_STEPS,
@@ -37,7 +39,7 @@ const char *field_name(FieldId field);
 /* The field of that name, FIELD_COUNT if there is none. */
 FieldId field_find(Domain domain, const char *name);
 
-/* The value of any field but margin, base and tip; a kind is its EdgeKind. Whole numbers may be written as 3.0, as programs do that know but one
+/* The value of any field but margin, holes, base and tip; a kind is its EdgeKind. Whole numbers may be written as 3.0, as programs do that know but one
  * kind of number. On failure the error (in IMPORT_ERROR, as all of src/import) says what was found and what may be. */
 gboolean field_value(FieldId field, const char *text, gsize length, double *out, GError **error);
 
@@ -49,5 +51,8 @@ Polygon *field_margin(const char *text, gsize length, GError **error);
 
 /* The same of points (Vec2), which it frees. */
 Polygon *field_outline(GArray *points, GError **error);
+
+/* Holes of the blade: the points of one after those of another, with ';' between. */
+Holes *field_holes(const char *text, gsize length, GError **error);
 
 #endif

@@ -84,6 +84,8 @@ static gboolean take_graph_value(Reader *r, FieldId field, const char *text, gsi
     r->draft.given[field] = 1;
     if (field == FIELD_MARGIN)
         return (r->draft.net->margin = field_margin(text, length, error)) != NULL;
+    if (field == FIELD_HOLES)
+        return (r->draft.net->holes = field_holes(text, length, error)) != NULL;
     if (field == FIELD_BASE || field == FIELD_TIP)
         return field_point(field, text, length, field == FIELD_BASE ? &r->draft.base : &r->draft.tip, error);
     gboolean good = field_value(field, text, length, &steps, error);

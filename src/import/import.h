@@ -19,7 +19,8 @@ typedef enum {
  * Attributes are found by attr.name, whatever their ids and order; defaults of keys count; others are passed over:
  *   nodes  x, y; birth
  *   edges  kind (vein, anastomosis), order, rank, vein, width, flow, birth
- *   graph  margin ("x,y x,y …", at least 3 points, either way round, not crossing itself), base, tip ("x,y"), steps
+ *   graph  margin ("x,y x,y …", at least 3 points, either way round, not crossing itself), holes (such points, with ';' between holes), base, tip
+ *          ("x,y"), steps
  * Only x and y are needed; what else is missing, on one node or edge or on all, is made:
  *   base   With a margin, a node: where edges are directed and have kinds one that no vein leads to, else any, and of these
  *          first by an end of the widest edge, if all have widths and not all the same; in the largest connected part (anastomoses do

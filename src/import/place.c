@@ -237,6 +237,8 @@ static gboolean move(Draft *d, const Place *place, GError **error)
         return TRUE;
     for (uint32_t v = 0; v < net->n_nodes; v++)
         net->node[v] = placed(place, net->node[v]);
+    for (uint32_t i = 0; net->holes != NULL && i < net->holes->start[net->holes->n]; i++)
+        net->holes->p[i] = placed(place, net->holes->p[i]);
     if (net->margin != NULL) {
         GArray *points = g_array_new(FALSE, FALSE, sizeof(Vec2));
         for (uint32_t i = 0; i < net->margin->n; i++) {

@@ -23,7 +23,7 @@ typedef struct {
     Holes *holes;            /* leaf coordinates: openings of the blade that stay open; NULL: none are kept */
     double back_off;         /* mean distance of the outlines of both sides, leaf lengths; 0 without a back */
     FangProfile *fang;       /* by edges */
-    char *drawing_lies;      /* how the drawn veins came to lie on it, in words (geom/svgplace.h); or NULL */
+    char *outline_lies, *drawing_lies; /* how the drawn outline and veins came to lie on it, in words (geom/svgplace.h); or NULL */
     GString *note;           /* what a person should know of it, a line each */
     double cut_off;          /* part of the outline that runs along the edge of the image, where the leaf goes on */
 } Ground;

@@ -1,5 +1,7 @@
 #include "lib/ground_back.h"
 
+#include "lib/ground_private.h"
+
 /* The affine map that takes points `from` to points `to` best, by least squares. */
 static Affine fit_affine(const Vec2 *from, const Vec2 *to, uint32_t n)
 {
@@ -120,4 +122,27 @@ BackLaid ground_lay_back(const Polygon *outline, const GPtrArray *all)
         polygon_free(seen);
     }
     return best;
+}
+
+/* ---- in the scan ---- */
+
+gboolean ground_find_back(Ground *g, const Params *p, const GPtrArray *all, GError **error)
+{
+    const char *front = params_text(p, PARAM_SCAN_FILE), *back = params_text(p, PARAM_SCAN_BACK);
+    BackLaid laid = ground_lay_back(g->outline, all);
+    g->back_off = laid.off;
+    if (!(laid.off <= BACK_WRONG)) {
+        g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE,
+                    "%s is no back of %s: laid onto each other as well as they go, their outlines lie %.1f %% of the leaf's length apart on average; "
+                    "%g %% are allowed", back, front, 100.0 * laid.off, 100.0 * BACK_WRONG);
+        return FALSE;
+    }
+    Affine pixels = ground_to_pixels(laid.base, laid.tip, g->back->height);
+    g->to_back = affine_multiply(&pixels, &laid.map);
+    if (laid.off > BACK_ODD && laid.same_side)
+        g_string_append_printf(g->note, "%s: its leaf lies the same way round as that of %s; does it show the same side?\n", back, front);
+    else if (laid.off > BACK_ODD)
+        g_string_append_printf(g->note, "%s: its outline lies %.1f %% of the leaf's length off that of %s on average; is it the same leaf, turned over?\n", back,
+                               100.0 * laid.off, front);
+    return TRUE;
 }

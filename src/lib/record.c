@@ -27,6 +27,10 @@ uint64_t leaf_hash(const Network *net)
     h = fnv(h, net->order, sizeof *net->order * net->n_edges);
     h = fnv(h, net->rank, sizeof *net->rank * net->n_edges);
     h = fnv(h, net->vein, sizeof *net->vein * net->n_edges);
+    if (net->holes) {
+        h = fnv(h, net->holes->start, sizeof *net->holes->start * ((gsize)net->holes->n + 1));
+        h = fnv(h, net->holes->p, sizeof *net->holes->p * net->holes->start[net->holes->n]);
+    }
     return fnv(h, net->margin->v, sizeof *net->margin->v * net->margin->n);
 }
 
@@ -129,6 +133,24 @@ static void scan_sizes(GString *s, const Ground *g)
     number(s, "area_mm2", mm * mm * (area - holes), ",\n");
 }
 
+static void text(GString *s, const char *name, const char *v)
+{
+    key(s, "    ", name);
+    export_json_string(s, v);
+    g_string_append(s, ",\n");
+}
+
+/* Where outline and veins come from, and by what a drawing of them came to lie on the scan. */
+static void scan_origins(GString *s, const Ground *g)
+{
+    text(s, "outline_from", g->profile ? "threshold" : g->fang ? "edges" : g->outline_lies ? "drawing" : "path");
+    if (g->outline_lies)
+        text(s, "outline_laid_by", g->outline_lies);
+    text(s, "veins_from", !g->drawing ? "none" : g->found ? "scan" : "drawing");
+    if (g->drawing_lies)
+        text(s, "veins_laid_by", g->drawing_lies);
+}
+
 /* What a scan gave, in pixels of it. */
 static void scan_facts(GString *s, const Ground *g)
 {
@@ -152,6 +174,7 @@ static void scan_facts(GString *s, const Ground *g)
     }
     scan_sizes(s, g);
     if (g->profile) {
+        number(s, "beyond_threshold", g->profile->beyond, ",\n");
         number(s, "symmetry", g->profile->symmetry, ",\n");
         g_string_append_printf(s, "    \"nodes_traced\": %u,\n    \"base_from\": \"%s\",\n", g->profile->nodes, base[g->profile->base_from]);
     }
@@ -167,8 +190,8 @@ static void scan_facts(GString *s, const Ground *g)
         number(s, "deviation_largest", g->fang->fit->largest, ",\n");
         number(s, "deviation_mean", g->fang->fit->mean, ",\n");
     }
-    g_string_append_printf(s, "    \"nodes\": %u,\n    \"veins\": %u,\n    \"veins_from\": \"%s\",\n", g->outline->n,
-                           g->drawing ? g->drawing->n : 0, !g->drawing ? "none" : g->found ? "scan" : "drawing");
+    g_string_append_printf(s, "    \"nodes\": %u,\n    \"veins\": %u,\n", g->outline->n, g->drawing ? g->drawing->n : 0);
+    scan_origins(s, g);
     key(s, "    ", "base");
     list(s, &from.x, 2, FALSE);
     g_string_append(s, ",\n");
@@ -192,6 +215,8 @@ static GString *begin_record(const VenLeaf *leaf)
     g_string_append(s, "  \"leaf\": {\n");
     number(s, "length", leaf->length, ",\n");
     number(s, "width", net->margin->box.x1 - net->margin->box.x0, ",\n");
+    if (net->holes)
+        number(s, "holes_area", net->holes->area, ",\n");
     number(s, "area", net->margin->area, "\n  },\n");
     g_string_append_printf(s, "  \"network\": {\n    \"nodes\": %u,\n    \"edges\": %u,\n    \"veins\": %u,\n    \"anastomoses\": %u,\n",
                            net->n_nodes, net->n_edges, net->n_veins, c->joins);

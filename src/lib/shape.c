@@ -4,6 +4,8 @@
 #include <math.h>
 
 #include "lib/settings.h"
+#include "shape/solid_cut.h"
+#include "sim/torn.h"
 
 /* What mesh.membrane may be, in the table's order. */
 enum { MEMBRANE_CHOICE_LAPLACE, MEMBRANE_CHOICE_NATURAL, MEMBRANE_CHOICE_BILAPLACE };
@@ -27,9 +29,11 @@ static Surface *flat_blade(const VenShape *s, const Mesh *mesh)
     return blade;
 }
 
-/* The tubes as a surface with uv. */
+/* The tubes, but for what a hole took, as a surface with uv. */
 static void dress_veins(const VenShape *s, Bent *b, const SolidDef *def)
 {
+    if (b->n_tubes == 0)
+        return;
     b->veins = solid_surface(b->tubes, b->n_tubes, def);
     for (uint32_t i = 0; i < b->veins->n_vertices; i++)
         b->veins->uv[i] = shape_uv(s, b->veins->uv[i]);
@@ -41,6 +45,7 @@ static void add_veins(const VenShape *s, Bent *b)
     for (uint32_t i = 0; i < s->skeleton->n_nodes; i++)
         normal[i] = b->pose->turn[i].z; /* the vein's own, which no crumpled triangle at the margin can flip */
     b->tubes = solid_tubes(b->pose, normal, &s->solid, &b->n_tubes);
+    b->tubes = solid_cut(b->tubes, &b->n_tubes, normal, s->leaf->net->holes);
     dress_veins(s, b, &s->solid);
     g_free(normal);
 }
@@ -184,6 +189,7 @@ Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent)
         SolidDef def = settings_solids(s->leaf->params, s->leaf->length, sqrt(1.0 / quarter));
         real_petiole(s->leaf, &def);
         b.tubes = solid_tubes(b.pose, normal, &def, &b.n_tubes);
+        b.tubes = solid_cut(b.tubes, &b.n_tubes, normal, s->leaf->net->holes);
         thin_veins(&b, &def, quarter * count_triangles(bent) - b.blade->n_triangles);
         dress_veins(s, &b, &def);
     }
@@ -227,7 +233,7 @@ static Mesh *coarse_mesh(const VenShape *s, double coarser, Skeleton **skeleton)
     SkeletonDef def = settings_skeleton(leaf->params, leaf->length, coarser);
     MeshDef mesh_def = settings_mesh(leaf->params, leaf->length, coarser);
     def.min_length = MIN(def.min_length, 0.7 * full->sequence[0].length);
-    Skeleton *sk = skeleton_new(s->midrib ? s->midrib : leaf->net, &def, NULL);
+    Skeleton *sk = shape_skeleton_by(s, def, NULL);
     Mesh *mesh = sk && borrow_names(sk, full) ? mesh_skeleton(sk, &mesh_def, NULL) : NULL;
     *skeleton = mesh ? skeleton_refine(sk, mesh) : NULL;
     skeleton_free(sk);
@@ -286,29 +292,6 @@ static void add_levels(VenShape *s)
 
 /* ---- the way there ---- */
 
-static Skeleton *make_skeleton(const VenShape *s, GError **error)
-{
-    const VenLeaf *leaf = s->leaf;
-    SkeletonDef def = settings_skeleton(leaf->params, leaf->length, 1.0);
-    Vec2 *point = NULL;
-    uint32_t *count = NULL, n;
-    Skeleton *sk = skeleton_new(s->midrib ? s->midrib : leaf->net, &def, error);
-    if (sk && !settings_fictitious(leaf->params, leaf->length, &point, &count, &n, error)) {
-        skeleton_free(sk);
-        sk = NULL;
-    }
-    if (sk && n) {
-        Skeleton *with = skeleton_add_fictitious(sk, point, count, n, leaf->length, error);
-        if (!with)
-            settings_prefix(leaf->params, PARAM_MESH_FICTITIOUS, error);
-        skeleton_free(sk);
-        sk = with;
-    }
-    g_free(point);
-    g_free(count);
-    return sk;
-}
-
 /* Mesh vertices on veins: a vertex that several nodes share is fixed by the first. */
 static void find_fixed(VenShape *s)
 {
@@ -329,7 +312,7 @@ static void find_fixed(VenShape *s)
 static gboolean build(VenShape *s, GError **error)
 {
     const VenLeaf *leaf = s->leaf;
-    Skeleton *coarse = make_skeleton(s, error);
+    Skeleton *coarse = shape_skeleton(s, error);
     if (!coarse)
         return FALSE;
     MeshDef def = settings_mesh(leaf->params, leaf->length, 1.0);
@@ -432,7 +415,7 @@ VenShape *ven_shape(const VenLeaf *leaf, GError **error)
     const Params *p = leaf->params;
     VenShape *s = g_new0(VenShape, 1);
     s->leaf = leaf;
-    s->midrib = leaf->net->n_edges ? NULL : shape_lay_midrib(leaf);
+    s->carries = leaf->net->n_edges ? network_tied(leaf->net) : shape_lay_midrib(leaf);
     s->solid = settings_solids(p, leaf->length, 1.0);
     real_petiole(leaf, &s->solid);
     s->unit = leaf_metres(leaf) / leaf->length;
@@ -447,7 +430,7 @@ void ven_shape_free(VenShape *s)
 {
     if (!s)
         return;
-    network_free(s->midrib);
+    network_free(s->carries);
     bent_clear(&s->bent);
     for (uint32_t i = 0; i < s->n_levels; i++)
         level_clear(&s->level[i]);

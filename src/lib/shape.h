@@ -28,7 +28,8 @@ typedef struct {
 
 struct VenShape {
     const VenLeaf *leaf; /* borrowed */
-    Network *midrib;     /* that a leaf without veins is given to bend about; else NULL */
+    Network *carries;    /* what the blade bends about where that is not just the leaf's network: a midrib for a leaf without veins, or its
+                            veins, tied across holes; else NULL */
     Skeleton *skeleton;  /* refined: every node is a mesh vertex */
     Mesh *mesh;
     uint32_t n_fixed, *fixed, *fixed_node; /* mesh vertices on veins and the skeleton node at each */
@@ -54,6 +55,13 @@ Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent);
 
 /* A midrib in the middle of a leaf that has no vein, as thin as its thinnest would be; straight where the blade lets it. */
 Network *shape_lay_midrib(const VenLeaf *leaf);
+
+/* The skeleton of the veins, and of mesh.fictitious_veins. */
+Skeleton *shape_skeleton(const VenShape *s, GError **error);
+
+/* Of the veins alone. Where what carries all the others runs through a part of the blade that is narrower than the clearance (the stub of a petiole, beside
+ * a deep notch), veins are cleared by less of it rather than none left. */
+Skeleton *shape_skeleton_by(const VenShape *s, SkeletonDef def, GError **error);
 
 /* uv of a point of the flat blade, v up. */
 Vec2 shape_uv(const VenShape *s, Vec2 rest);

@@ -134,7 +134,7 @@ static void fill_model(ModelWriter *m)
     o->base_color_file = m->file[MAP_BASE_COLOR];
     o->abaxial_base_color_file = m->file[MAP_ABAXIAL_BASE_COLOR];
     o->opacity_file = m->file[MAP_OPACITY];
-    o->holes = m->writer.holes && m->writer.holes->n > 0;
+    o->holes = s->leaf->net->holes != NULL;
     o->normal_file = m->file[MAP_ADAXIAL_NORMAL_GL];
     o->roughness_file = m->file[MAP_ROUGHNESS];
     o->height_file = m->file[MAP_HEIGHT];

@@ -6,6 +6,7 @@
 #include "import/import.h"
 #include "lib/leaf.h"
 #include "lib/settings.h"
+#include "sim/torn.h"
 
 const char *ven_version(void) { return VENATION_VERSION; }
 
@@ -50,6 +51,16 @@ void ven_params_free(VenParams *params)
 
 /* ---- growing ---- */
 
+/* Holes that the scan shows, and stay, are in the finished leaf alone: they were eaten into it. */
+static void open_holes(VenLeaf *leaf)
+{
+    Affine to_segments = {.a = leaf->length, .d = leaf->length};
+    if (!leaf->ground || !leaf->ground->holes)
+        return;
+    leaf->net = network_tear(leaf->net, holes_mapped(leaf->ground->holes, &to_segments));
+    leaf->counts.nodes = leaf->net->n_nodes;
+}
+
 static VenLeaf *leaf_new(const Params *params, Ground *ground, const SimulationDef *def, const Simulation *sim)
 {
     const Blade *blade = simulation_blade(sim);
@@ -72,6 +83,8 @@ static VenLeaf *leaf_new(const Params *params, Ground *ground, const SimulationD
     leaf->length = leaf->net->length = blade->length;
     leaf->growth_steps = blade->last_step;
     leaf->stage = blade->widest;
+    if (leaf->counts.end != END_RUNNING)
+        open_holes(leaf);
     return leaf;
 }
 
@@ -171,6 +184,7 @@ static VenLeaf *leaf_of(const Params *p, Ground *ground, uint64_t seed, unsigned
         leaf->counts.joins += net->kind[e] == EDGE_ANASTOMOSIS;
     leaf->length = leaf->net->length = length;
     leaf->stage = net->margin->box;
+    open_holes(leaf);
     return leaf;
 }
 
@@ -319,6 +333,8 @@ VenLeaf *ven_leaf_load(const VenParams *params, const char *path, uint64_t seed,
         network_free(net);
         return NULL;
     }
+    if (net->holes)
+        net = network_tear(net, g_steal_pointer(&net->holes));
     VenLeaf *leaf = leaf_of(p, ground, seed, 0, net, net->length, END_LOADED);
     ground_unref(ground);
     return leaf;

@@ -13,12 +13,6 @@ static void shadow_tint(const Params *p, float tint[3])
         tint[i] = (float)CLAMP(sqrt((double)style.abaxial_lamina[i] / MAX((double)style.lamina[i], 1e-3)), 0.8, 1.5);
 }
 
-static Holes *lay_holes(const VenLeaf *leaf)
-{
-    Affine to_segments = {.a = leaf->length, .d = leaf->length};
-    return leaf->ground ? holes_mapped(leaf->ground->holes, &to_segments) : NULL;
-}
-
 static void lay_photos(Writer *w)
 {
     const Ground *g = w->leaf->ground;
@@ -45,7 +39,6 @@ void writer_init(Writer *w, const VenLeaf *leaf, const char *dir, const char *na
     w->depth = params_choice(leaf->params, PARAM_TEXTURE_DEPTH) ? 16 : 8;
     w->exr = params_choice(leaf->params, PARAM_TEXTURE_EXR);
     lay_photos(w);
-    w->holes = lay_holes(leaf);
 }
 
 void writer_clear(Writer *w)
@@ -54,7 +47,6 @@ void writer_clear(Writer *w)
         g_free(w->value[i]);
     for (int i = 0; i < 2; i++)
         photo_free(w->photo[i]);
-    holes_free(w->holes);
 }
 
 gboolean writer_make_dir(const Writer *w, GError **error)
@@ -79,6 +71,5 @@ Painter *writer_painter(const Writer *w, const Frame *frame)
     style.reference = w->leaf->reference;
     for (int i = 0; i < 2; i++)
         style.photo[i] = w->photo[i];
-    style.holes = w->holes;
     return painter_new(w->leaf->net, frame, &style);
 }

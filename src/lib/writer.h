@@ -16,7 +16,6 @@ typedef struct {
     Metadata meta;
     int depth; /* bits a channel of PNG */
     int exr;   /* 0 none, 1 half, 2 float */
-    Holes *holes;    /* of the blade, segments, or NULL */
     Photo *photo[2]; /* the scan as colours of the sunny and the shadow side, or NULL */
 } Writer;
 

@@ -1,7 +1,5 @@
 #include "scan/profile.h"
 
-#include <string.h>
-
 #include "geom/march.h"
 #include "geom/ring.h"
 #include "scan/axis.h"
@@ -25,8 +23,6 @@ void profile_free(Profile *p)
     if (!p)
         return;
     polygon_free(p->outline);
-    g_free(p->hole_start);
-    g_free(p->hole);
     g_free(p);
 }
 
@@ -81,23 +77,8 @@ static Vec2 upright(const Capture *c, Vec2 p)
     return vec2(c->box.x0 + p.x + 0.5, c->mask->height - (c->box.y0 + p.y + 0.5));
 }
 
-static void keep_holes(Profile *out, const MarchLoops *l, const Polygon *outline)
-{
-    out->hole_start = g_new(uint32_t, (gsize)l->n + 1);
-    out->hole = g_new(Vec2, l->start[l->n]);
-    out->hole_start[0] = 0;
-    for (uint32_t k = 0; k < l->n; k++) {
-        uint32_t n = l->start[k + 1] - l->start[k], at = out->hole_start[out->n_holes];
-        if (l->area[k] > 0.0 || !polygon_contains(outline, l->p[l->start[k]]))
-            continue;
-        memcpy(out->hole + at, l->p + l->start[k], n * sizeof(Vec2));
-        out->hole_start[++out->n_holes] = at + n;
-    }
-    out->hole = g_renew(Vec2, out->hole, out->hole_start[out->n_holes] + 1);
-}
-
-/* Pixels of the holes. */
-static double hole_area(const Capture *c, uint8_t stalk)
+/* Pixels that the leaf encloses. */
+static double enclosed(const Capture *c, uint8_t stalk)
 {
     uint64_t n = 0;
     Mask w = mask_window(c->mask, c->box);
@@ -107,22 +88,19 @@ static double hole_area(const Capture *c, uint8_t stalk)
     return (double)n;
 }
 
-static void measure(const Capture *c, const MarchLoops *l, const Polygon *outline)
+static void measure(const Capture *c, const Polygon *outline)
 {
     Profile *o = c->out;
     o->area = outline->area;
     o->perimeter = ring_length(outline);
     o->nodes = outline->n;
-    if (!c->def->keep_holes)
-        return;
-    o->area -= hole_area(c, c->def->keep_stalk ? 0 : MASK_STALK);
-    keep_holes(o, l, outline);
+    o->beyond = enclosed(c, c->def->keep_stalk ? 0 : MASK_STALK);
 }
 
 /* The outline as traced, with or without the petiole; NULL when the square is too large to meet the leaf. */
 static Polygon *trace(Capture *c, bool stalk)
 {
-    uint8_t test = MASK_THIS | (c->def->keep_holes ? MASK_HOLE : 0) | (stalk ? 0 : MASK_STALK);
+    uint8_t test = MASK_THIS | (stalk ? 0 : MASK_STALK);
     MarchField f = {.px = c->mask->px, .width = c->mask->width, .height = c->mask->height, .test = test, .want = MASK_THIS,
                     .x0 = c->box.x0, .y0 = c->box.y0, .x1 = c->box.x1, .y1 = c->box.y1,
                     .level = c->def->subpixel && c->threshold ? level_of : NULL, .user = c,
@@ -133,7 +111,7 @@ static Polygon *trace(Capture *c, bool stalk)
     if (k < l->n) {
         p = polygon_new(l->p + l->start[k], l->start[k + 1] - l->start[k]);
         if (stalk == c->def->keep_stalk)
-            measure(c, l, p);
+            measure(c, p);
     }
     march_loops_free(l);
     return p;

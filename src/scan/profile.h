@@ -12,7 +12,6 @@ typedef struct {
     double close, open;  /* radii of discs by which gaps are closed, then thin and small things removed; 0: not done */
     bool each;           /* every leaf, not just the largest */
     double least_area;   /* of a leaf, share of the largest; what is smaller is a speck */
-    bool keep_holes;     /* else they are filled, as the thesis does */
     bool keep_stalk;     /* else the petiole is cut off where it meets the blade */
     bool has_base, has_tip; /* given by hand; not with `each` */
     Vec2 base, tip;
@@ -21,7 +20,7 @@ typedef struct {
     double tolerance;    /* of the outline's simplification; 0: none */
 } ProfileDef;
 
-/* Otsu on the best channel, the largest leaf, holes filled, petiole cut off, square 1, levels, tolerance 1. */
+/* Otsu on the best channel, the largest leaf, petiole cut off, square 1, levels, tolerance 1. */
 ProfileDef profile_def_default(void);
 
 /* How the base was found. */
@@ -37,15 +36,13 @@ typedef struct {
     ProfileBase base_from;
     double symmetry;      /* of the line from base to tip: share of the blade that is blade again when mirrored about it */
     double mm_per_pixel;  /* 0: unknown */
-    double area;          /* of the outline as traced, before simplification, less the pixels of holes that are kept; pixels² */
+    double area;          /* of the outline as traced, before simplification; pixels² */
+    double beyond;        /* of what in it lies on the other side of the threshold: holes (scan/openings.h), but pale veins and glare, too; pixels² */
     double perimeter;     /* of the outline as traced, without holes */
     uint32_t nodes;       /* of the outline as traced */
     bool has_stalk;
     Vec2 stalk_end;       /* its free end */
     double stalk_width, stalk_length;
-    /* Holes as traced, clockwise: hole k has points hole_start[k] … hole_start[k + 1] - 1. A simplified outline can cut one near it. */
-    uint32_t n_holes, *hole_start;
-    Vec2 *hole;
 } Profile;
 
 /* The leaves of a scan, largest first; *used (unless NULL) receives the threshold. SCAN_ERROR_NO_LEAF when there is none, SCAN_ERROR_VALUE for settings

@@ -287,6 +287,50 @@ static void collect(const Faces *f, Areoles *a)
     g_free(in);
 }
 
+/* ---- holes ---- */
+
+/* Is p in the areole: within an odd number of its rings? */
+static bool encloses(const Areoles *a, const Vec2 *place, uint32_t k, Vec2 p)
+{
+    bool in = false;
+    for (uint32_t r = a->first[k]; r < a->first[k + 1]; r++)
+        for (uint32_t i = a->ring[r]; i < a->ring[r + 1]; i++) {
+            Vec2 u = place[a->node[i]], v = place[a->node[i + 1 < a->ring[r + 1] ? i + 1 : a->ring[r]]];
+            if ((u.y > p.y) != (v.y > p.y) && p.x < u.x + (v.x - u.x) * ((p.y - u.y) / (v.y - u.y)))
+                in = !in;
+        }
+    return in;
+}
+
+/* The areoles that hold no hole. No vein crosses one, so each hole lies in one areole, or in none. O(holes · edges). */
+static void drop_torn(Areoles *a, const Vec2 *place, const Holes *holes)
+{
+    bool *torn = g_new0(bool, (gsize)a->n + 1);
+    for (uint32_t k = 0; k < holes->n; k++) {
+        Vec2 p = holes_point(holes, k);
+        for (uint32_t i = 0; i < a->n; i++)
+            torn[i] = torn[i] || encloses(a, place, i, p);
+    }
+    uint32_t n = 0, rings = 0, nodes = 0;
+    for (uint32_t i = 0; i < a->n; i++) {
+        uint32_t from = a->first[i], to = a->first[i + 1]; /* what is written lies before what is read */
+        if (torn[i])
+            continue;
+        a->area[n] = a->area[i];
+        a->first[n++] = rings;
+        for (uint32_t r = from; r < to; r++) {
+            uint32_t first = a->ring[r], last = a->ring[r + 1];
+            a->ring[rings++] = nodes;
+            for (uint32_t j = first; j < last; j++)
+                a->node[nodes++] = a->node[j];
+        }
+    }
+    a->n = n;
+    a->first[n] = a->n_rings = rings;
+    a->ring[rings] = nodes;
+    g_free(torn);
+}
+
 Areoles *network_areoles(const Network *net)
 {
     Areoles *a = g_new0(Areoles, 1);
@@ -300,6 +344,8 @@ Areoles *network_areoles(const Network *net)
     faces_init(&f, p);
     collect(&f, a);
     faces_clear(&f);
+    if (net->holes)
+        drop_torn(a, p->node, net->holes);
     a->n_places = p->n_nodes;
     a->place = g_steal_pointer(&p->node);
     planar_free(p);

@@ -7,6 +7,7 @@
 /* Veins count as lines along their axes. An areole is a bounded face of the planar graph of the edges (planar.h) after all edges that have the same
  * face on either side are taken away: free ends, trees, and lines that merely join one net to another part no areoles. What is left of separate
  * nets that lie within an areole are its islands: they are not of it. So every place that the outermost veins enclose lies in exactly one areole.
+ * What a hole of the blade has torn open, or lies in, is no areole any more: its place lies in none.
  *
  * Areole a has rings first[a] … first[a + 1] - 1: its outer boundary, counter-clockwise, then its islands, clockwise. Ring r has nodes
  * node[ring[r]] … node[ring[r + 1] - 1], from its lowest one on, the areole to the left of the way; a ring may pass a node more than once, as

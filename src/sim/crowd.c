@@ -199,24 +199,39 @@ static void few_fill(Few *few, const Vec2 *pos)
     }
 }
 
+/* The few of a square as they are, but for those that are too far off. */
+static uint32_t those_near(const Vec2 *pos, const Square *q, const Crowd *c, uint32_t *out)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < q->n_nearest; i++)
+        if (box_dist2(c->place, pos[q->nearest[i]]) <= c->most2 * (1.0 + 1e-9))
+            out[n++] = q->nearest[i];
+    return n;
+}
+
 bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
 {
     const Vec2 *pos = s->veins.pos;
     const Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
     Few *nearest = &sight->nearest, *rival = &sight->rival;
     rival->n = 0;
-    if (q && q->n_nearest <= POINTS_MOST)
+    if (q && q->n_nearest <= 2)
+        nearest->n = those_near(pos, q, c, nearest->v);
+    else if (q && q->n_nearest <= POINTS_MOST)
         nearest->n = points_nearest_to(pos, q->nearest, q->n_nearest, c->place, c->most2, nearest->v);
     else
         nearest->n = nearest_to(s, c->place, c->most2, nearest->v);
     if (nearest->n > POINTS_MOST)
         return false;
     few_fill(nearest, pos);
+    for (uint32_t j = 0; j < nearest->n; j++)
+        sight->kin[j] = nearest->v[j];
     if (s->def.pattern == PATTERN_OPEN || nearest->n == 0)
         return true;
     for (uint32_t j = 0; j < nearest->n; j++) {
         uint32_t v = nearest->v[j], parent = s->veins.parent[v];
         sight->stride2[j] = parent == NO_POINT ? HUGE_VAL : vec_dist2(pos[v], pos[parent]);
+        sight->kin[j] |= (int64_t)(parent == NO_POINT ? 0 : parent) << 32;
     }
     if (q && q->n_nearest <= POINTS_MOST && q->n_rivals <= SQUARE_RIVALS)
         rival->n = points_rivals(pos, q->rival, q->n_rivals, c->place, nearest->v, nearest->n, s->reach != NULL, rival->v);
@@ -225,5 +240,8 @@ bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
     if (rival->n > FEW)
         return false;
     few_fill(rival, pos);
+    for (uint32_t j = 0; j < rival->n; j++)
+        for (uint32_t i = 0; i < MIN(nearest->n, SIGHT_GUARDS); i++)
+            sight->apart2[j][i] = vec_dist2(vec2(nearest->x[i], nearest->y[i]), vec2(rival->x[j], rival->y[j]));
     return true;
 }

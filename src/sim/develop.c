@@ -231,6 +231,7 @@ static void settle_ready(Turn *t)
 
 static void take_bands(uint32_t first, uint32_t last, void *user)
 {
+    enum { PATIENCE = 2000 };
     Turn *t = user;
     Simulation *s = t->s;
     Sight sight;
@@ -241,9 +242,10 @@ static void take_bands(uint32_t first, uint32_t last, void *user)
             seen += crowd_look(s, &s->crowds.crowd[c], &sight);
         if (seen)
             g_atomic_int_add(&s->seen, (gint)seen); /* a sum: the order of the threads doesn't matter */
-        while (b >= (uint32_t)g_atomic_int_get(&t->settled) + t->ring) {
+        for (uint32_t i = 1; b >= (uint32_t)g_atomic_int_get(&t->settled) + t->ring; i++) {
             settle_ready(t);
-            g_thread_yield();
+            if (i % PATIENCE == 0)
+                g_usleep(50); /* the one who is at the first of them has no processor */
         }
         gsize at = (gsize)(b % t->ring) * s->crowds.longest;
         if (t->pull && s->veins.n)

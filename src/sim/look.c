@@ -66,38 +66,73 @@ static void look_alone(Simulation *s, uint32_t k)
 
 /* ---- a crowd ---- */
 
-/* Four sources, and which of the nearest few is the new nearest node of each. */
+/* Four sources, and the nearest of the few as each of them sees it. */
 typedef struct {
-    Four x, y, d2;
-    FourMask which; /* -1: none is nearer than the node that it has */
+    Four x, y;
+    Four near2, d2;   /* before and now; -1: not plain, so nearer than anything to its node */
+    FourMask kin;     /* of the new nearest node (Sight); -1: none is nearer than the node that it has */
+    FourMask old;     /* the node that it has */
+    Four stride2;     /* closed: as in Sight */
 } Block;
 
-/* Of equally near nodes the smallest, and the one before over all. Removed sources and those apart are nearer than anything to theirs. */
-static inline __attribute__((always_inline)) void block_look(const Simulation *s, uint32_t k, uint32_t n, const Few *few, Block *b)
+/* Of equally near nodes the smallest, and the one before over all. With n < 4 the last ones are nothing. */
+static inline __attribute__((always_inline)) void block_look(const Simulation *s, uint32_t k, uint32_t n, const Sight *sight, bool open, Block *b)
 {
-    double x[4], y[4], d2[4] = {-1.0, -1.0, -1.0, -1.0};
-    for (uint32_t l = 0; l < 4; l++) {
-        uint32_t i = l < n ? k + l : k;
-        x[l] = s->place[i].x;
-        y[l] = s->place[i].y;
-        if (l < n)
-            d2[l] = s->near2[i];
+    const Few *few = &sight->nearest;
+    if (n == 4) {
+        Four low, high;
+        FourNodes near;
+        memcpy(&low, s->place + k, sizeof low);
+        memcpy(&high, s->place + k + 2, sizeof high);
+        memcpy(&b->near2, s->near2 + k, sizeof b->near2);
+        memcpy(&near, s->near + k, sizeof near);
+        b->x = __builtin_shufflevector(low, high, 0, 2, 4, 6);
+        b->y = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+        b->old = __builtin_convertvector(near, FourMask);
+    } else {
+        for (uint32_t l = 0; l < 4; l++) {
+            uint32_t i = l < n ? k + l : k;
+            b->x[l] = s->place[i].x;
+            b->y[l] = s->place[i].y;
+            b->near2[l] = l < n ? s->near2[i] : -1.0;
+            b->old[l] = s->near[i];
+        }
     }
-    Four px = {x[0], x[1], x[2], x[3]}, py = {y[0], y[1], y[2], y[3]}, least = {d2[0], d2[1], d2[2], d2[3]};
-    FourMask which = {-1, -1, -1, -1};
+    Four px = b->x, py = b->y, least = b->near2, stride2 = FOUR(0.0);
+    FourMask kin = {-1, -1, -1, -1};
     for (uint32_t j = 0; j < few->n; j++) {
         Four dx = px - FOUR(few->x[j]), dy = py - FOUR(few->y[j]), e2 = dx * dx + dy * dy;
-        FourMask nearer = e2 < least, number = {j, j, j, j};
+        FourMask nearer = e2 < least, mine = FOUR_MASK(sight->kin[j]);
         least = FOUR_PICK(nearer, e2, least);
-        which = (number & nearer) | (which & ~nearer);
+        kin = (mine & nearer) | (kin & ~nearer);
+        if (!open)
+            stride2 = FOUR_PICK(nearer, FOUR(sight->stride2[j]), stride2);
     }
-    b->x = px;
-    b->y = py;
     b->d2 = least;
-    b->which = which;
+    b->kin = kin;
+    b->stride2 = stride2;
 }
 
-/* A source of an open pattern. When it can't see the node it looks for itself. */
+/* Turns those in the mask to their new nodes. */
+static inline __attribute__((always_inline)) void block_move(Simulation *s, uint32_t k, uint32_t n, const Block *b, const FourMask *moved)
+{
+    FourNodes near = __builtin_convertvector((b->kin & *moved) | (b->old & ~*moved), FourNodes);
+    if (n == 4) {
+        memcpy(s->near + k, &near, sizeof near);
+        memcpy(s->near2 + k, &b->d2, sizeof b->d2);
+        return;
+    }
+    for (uint32_t l = 0; l < n; l++) {
+        s->near[k + l] = near[l];
+        s->near2[k + l] = b->d2[l];
+    }
+}
+
+static inline double four_most(const Four *v) { return MAX(MAX((*v)[0], (*v)[1]), MAX((*v)[2], (*v)[3])); }
+
+/* ---- a crowd of an open pattern ---- */
+
+/* When the source can't see the node it looks for itself. */
 static void show_open(Simulation *s, uint32_t k, uint32_t v, double d2, double within2)
 {
     if (s->reach && !source_sees(s, k, v)) {
@@ -109,51 +144,41 @@ static void show_open(Simulation *s, uint32_t k, uint32_t v, double d2, double w
     s->mark[k] = d2 < within2 ? MARK_WITHIN : 0;
 }
 
-static inline double four_most(const Four *v) { return MAX(MAX((*v)[0], (*v)[1]), MAX((*v)[2], (*v)[3])); }
-
-/* Most often those of the four that are plain turn to new nodes and stay plain; the others are no matter. FALSE: see for each. */
-static inline __attribute__((always_inline)) bool all_move_on(Simulation *s, uint32_t k, const Block *b, const FourMask *trouble_of,
-                                                              double within2, const Few *few)
+/* Has one of n sources a mark? */
+static inline __attribute__((always_inline)) bool any_marked(const Simulation *s, uint32_t k, uint32_t n)
 {
-    FourMask plain = b->d2 >= FOUR(0.0);
-    FourMask trouble = (*trouble_of | (b->which < (FourMask){0, 0, 0, 0}) | (b->d2 < FOUR(within2))) & plain;
-    uint32_t marks;
-    memcpy(&marks, s->mark + k, sizeof marks);
-    if (s->reach || FOUR_ANY(trouble))
-        return false;
-    for (uint32_t l = 0; marks && l < 4; l++)
-        if (plain[l] && s->mark[k + l])
-            return false;
-    for (uint32_t l = 0; l < 4; l++)
-        if (plain[l])
-            s->near[k + l] = few->v[b->which[l]];
-    memcpy(s->near2 + k, &b->d2, sizeof b->d2);
-    return true;
+    uint32_t marks = 0;
+    memcpy(&marks, s->mark + k, n == 4 ? 4 : n);
+    return marks != 0;
 }
 
-static FOUR_WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Few *few)
+static inline __attribute__((always_inline)) void show_block_open(Simulation *s, uint32_t k, uint32_t n, const Sight *sight, double within2,
+                                                                  Four *most2)
+{
+    Block b;
+    block_look(s, k, n, sight, true, &b);
+    FourMask moved = b.kin >= FOUR_MASK(0), within = (b.d2 < FOUR(within2)) & moved;
+    if (!s->reach && !FOUR_ANY(within) && !any_marked(s, k, n)) {
+        block_move(s, k, n, &b, &moved);
+    } else {
+        for (uint32_t l = 0; l < n; l++) {
+            if (moved[l])
+                show_open(s, k + l, (uint32_t)b.kin[l], b.d2[l], within2);
+            b.d2[l] = s->near2[k + l]; /* that of a node it sees */
+        }
+    }
+    *most2 = FOUR_PICK(b.d2 > *most2, b.d2, *most2);
+}
+
+static FOUR_WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight)
 {
     double within2 = MAX(kill2(s), past2(s));
     Four most2 = FOUR(-1.0);
-    const FourMask none = {0, 0, 0, 0};
-    for (uint32_t k = first; k < last; k += 4) {
-        uint32_t n = MIN(4, last - k);
-        Block b;
-        if (n == 4)
-            block_look(s, k, 4, few, &b);
-        else
-            block_look(s, k, n, few, &b);
-        if (n == 4 && all_move_on(s, k, &b, &none, within2, few)) {
-            most2 = FOUR_PICK(b.d2 > most2, b.d2, most2);
-            continue;
-        }
-        for (uint32_t l = 0; l < n; l++)
-            if (b.which[l] >= 0)
-                show_open(s, k + l, few->v[b.which[l]], b.d2[l], within2);
-        for (uint32_t l = 0; s->reach && l < n; l++)
-            b.d2[l] = s->near2[k + l]; /* that of a node it sees */
-        most2 = FOUR_PICK(b.d2 > most2, b.d2, most2);
-    }
+    uint32_t k = first;
+    for (; k + 4 <= last; k += 4)
+        show_block_open(s, k, 4, sight, within2, &most2);
+    if (k < last)
+        show_block_open(s, k, last - k, sight, within2, &most2);
     return four_most(&most2);
 }
 
@@ -206,82 +231,77 @@ static bool show_closed(Simulation *s, uint32_t k, uint32_t v, double d2, bool a
     return true;
 }
 
-/* Which of the four keep their old node beside the new nearest one? It excludes the old one when it is its child and near by, as it mostly is. */
-static inline __attribute__((always_inline)) void block_stays(const Simulation *s, uint32_t k, uint32_t n, const Block *b,
-                                                              const Sight *sight, FourMask *out)
-{
-    const Veins *veins = &s->veins;
-    const Few *few = &sight->nearest;
-    FourMask stays = {0, 0, 0, 0};
-    for (uint32_t l = 0; l < n; l++) {
-        uint32_t old = s->near[k + l];
-        int64_t j = b->which[l];
-        if (j < 0 || (veins->parent[few->v[j]] == old && sight->stride2[j] <= s->near2[k + l]))
-            continue;
-        Vec2 v = vec2(few->x[j], few->y[j]);
-        stays[l] = vec_dist2(v, veins->pos[old]) > s->near2[k + l] ? -1 : 0;
-    }
-    *out = stays;
-}
-
-/* For which of them are there rivals that neither the new nearest node nor another of the few excludes? */
-static inline __attribute__((always_inline)) void block_rivals(const Simulation *s, const Block *b, const Sight *sight, FourMask *out)
+/* For which of them are there rivals that neither the new nearest node nor another of the first few excludes? */
+static inline __attribute__((always_inline)) void block_rivals(const Simulation *s, const Block *b, const Sight *sight, const FourMask *plain,
+                                                               FourMask *more)
 {
     const Few *few = &sight->nearest, *rival = &sight->rival;
-    uint32_t at[4];
-    for (uint32_t l = 0; l < 4; l++)
-        at[l] = b->which[l] < 0 ? 0 : (uint32_t)b->which[l];
-    Four vx = {few->x[at[0]], few->x[at[1]], few->x[at[2]], few->x[at[3]]};
-    Four vy = {few->y[at[0]], few->y[at[1]], few->y[at[2]], few->y[at[3]]};
-    FourMask more = {0, 0, 0, 0};
-    for (uint32_t j = 0; j < rival->n; j++) {
-        Vec2 r = vec2(rival->x[j], rival->y[j]);
-        Four rx = FOUR(r.x), ry = FOUR(r.y), d2 = (rx - b->x) * (rx - b->x) + (ry - b->y) * (ry - b->y);
-        FourMask open = (rx - vx) * (rx - vx) + (ry - vy) * (ry - vy) > d2;
-        for (uint32_t i = 0; i < few->n && !s->reach && FOUR_ANY(open); i++) {
-            Vec2 u = vec2(few->x[i], few->y[i]);
-            Four dx = FOUR(u.x) - b->x, dy = FOUR(u.y) - b->y;
-            open &= ~((dx * dx + dy * dy < d2) & (FOUR(vec_dist2(u, r)) <= d2));
-        }
-        more |= open;
+    uint32_t n = s->reach ? 0 : MIN(few->n, SIGHT_GUARDS);
+    Four vx, vy, e2[SIGHT_GUARDS];
+    for (uint32_t l = 0; l < 4; l++) {
+        Vec2 v = b->kin[l] < 0 ? vec2(0.0, 0.0) : s->veins.pos[(uint32_t)b->kin[l]];
+        vx[l] = v.x;
+        vy[l] = v.y;
     }
-    *out = more;
+    for (uint32_t i = 0; i < n; i++) {
+        Four dx = FOUR(few->x[i]) - b->x, dy = FOUR(few->y[i]) - b->y;
+        e2[i] = dx * dx + dy * dy;
+    }
+    for (uint32_t j = 0; j < rival->n; j++) {
+        Four rx = FOUR(rival->x[j]), ry = FOUR(rival->y[j]), d2 = (rx - b->x) * (rx - b->x) + (ry - b->y) * (ry - b->y);
+        FourMask open = ((rx - vx) * (rx - vx) + (ry - vy) * (ry - vy) > d2) & *plain;
+        if (!FOUR_ANY(open))
+            continue;
+        const double *apart2 = sight->apart2[j];
+        for (uint32_t i = 0; i < n; i++)
+            open &= ~((e2[i] < d2) & (FOUR(apart2[i]) <= d2));
+        *more |= open;
+    }
+}
+
+/* One source of a block that did not move on as a whole. */
+static void show_one_closed(Simulation *s, uint32_t k, int64_t kin, double d2, bool child, bool alone, const Sight *sight)
+{
+    uint32_t v = (uint32_t)kin;
+    bool stays = kin >= 0 && !child && vec_dist2(s->veins.pos[v], s->veins.pos[s->near[k]]) > s->near2[k];
+    if (kin < 0 || stays || !show_closed(s, k, v, d2, alone, sight))
+        look_closed(s, k);
+}
+
+/* Most often all that are plain turn to new nodes and stay plain: the new node is a child of the old one and near by, and so excludes it. */
+static inline __attribute__((always_inline)) void show_block_closed(Simulation *s, uint32_t k, uint32_t n, const Sight *sight, double within2,
+                                                                    bool *parted, Four *most2)
+{
+    Block b;
+    block_look(s, k, n, sight, false, &b);
+    FourMask plain = b.near2 >= FOUR(0.0), child = ((b.kin >> 32) == b.old) & (b.stride2 <= b.near2), more = FOUR_MASK(0);
+    if (sight->rival.n)
+        block_rivals(s, &b, sight, &plain, &more);
+    FourMask trouble = (~child | (b.d2 < FOUR(within2)) | more) & plain;
+    if (!s->reach && !FOUR_ANY(trouble)) {
+        block_move(s, k, n, &b, &plain);
+    } else {
+        for (uint32_t l = 0; l < n; l++) {
+            if (!plain[l])
+                continue;
+            show_one_closed(s, k + l, b.kin[l], b.d2[l], child[l], !more[l], sight);
+            *parted |= (s->mark[k + l] & MARK_APART) != 0;
+            b.d2[l] = s->near2[k + l];
+        }
+    }
+    *most2 = FOUR_PICK(b.d2 > *most2, b.d2, *most2);
 }
 
 static FOUR_WIDE double look_closed_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, bool *parted)
 {
-    const Few *few = &sight->nearest;
-    double most2 = -1.0, within2 = MAX(kill2(s), past2(s));
-    Four far2 = FOUR(-1.0);
-    for (uint32_t k = first; k < last; k += 4) {
-        uint32_t n = MIN(4, last - k);
-        Block b;
-        FourMask more = {0, 0, 0, 0}, stays;
-        if (n == 4) {
-            block_look(s, k, 4, few, &b);
-            block_stays(s, k, 4, &b, sight, &stays);
-        } else {
-            block_look(s, k, n, few, &b);
-            block_stays(s, k, n, &b, sight, &stays);
-        }
-        if (sight->rival.n)
-            block_rivals(s, &b, sight, &more);
-        FourMask trouble = stays | more;
-        if (n == 4 && all_move_on(s, k, &b, &trouble, within2, few)) {
-            far2 = FOUR_PICK(b.d2 > far2, b.d2, far2);
-            continue;
-        }
-        for (uint32_t l = 0; l < n; l++) {
-            if (s->near2[k + l] < 0.0)
-                continue;
-            int64_t j = b.which[l];
-            if (j < 0 || stays[l] || !show_closed(s, k + l, few->v[j], b.d2[l], !more[l], sight))
-                look_closed(s, k + l);
-            *parted |= (s->mark[k + l] & MARK_APART) != 0;
-            most2 = MAX(most2, s->near2[k + l]);
-        }
-    }
-    return MAX(most2, four_most(&far2));
+    double within2 = MAX(kill2(s), past2(s));
+    Four most2 = FOUR(-1.0);
+    uint32_t k = first;
+    for (; k + 4 <= last; k += 4)
+        show_block_closed(s, k, 4, sight, within2, parted, &most2);
+    if (k < last)
+        show_block_closed(s, k, last - k, sight, within2, parted, &most2);
+    return four_most(&most2);
 }
 
 /* ---- those apart ---- */
@@ -329,11 +349,24 @@ static uint32_t look_all_alone(Simulation *s, const Crowd *c)
 
 enum { CROWD_LEAST = 4 }; /* fewer are better off alone */
 
+/* Asks for what the crowd's sources are, while it is found out what they look at. */
+static void crowd_fetch(const Simulation *s, const Crowd *c)
+{
+    enum { LINE = 64 };
+    for (uint32_t r = 0; r < CROWD_SIDE; r++)
+        for (uint32_t k = c->first[r]; k < c->last[r]; k += LINE / sizeof *s->place) {
+            __builtin_prefetch(s->place + k);
+            __builtin_prefetch(s->near2 + k, 1);
+            __builtin_prefetch(s->near + k, 1);
+        }
+}
+
 /* Those that pull one node each. `parted`: one of a closed pattern may no longer be like that. */
 static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, bool *parted)
 {
     if (c->most2 < 0.0)
         return 0;
+    crowd_fetch(s, c);
     bool open = s->def.pattern == PATTERN_OPEN, few = c->plain >= CROWD_LEAST && crowd_sight(s, c, sight);
     if (open && few && sight->nearest.n == 0)
         return 0;
@@ -346,7 +379,7 @@ static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, bool *parte
     double most2 = -1.0;
     for (uint32_t r = 0; r < CROWD_SIDE; r++) {
         uint32_t first = c->first[r], last = c->last[r];
-        double run2 = open ? look_open_run(s, first, last, &sight->nearest) : look_closed_run(s, first, last, sight, parted);
+        double run2 = open ? look_open_run(s, first, last, sight) : look_closed_run(s, first, last, sight, parted);
         most2 = MAX(most2, run2);
         seen += last - first;
     }

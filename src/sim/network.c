@@ -37,5 +37,6 @@ void network_free(Network *n)
     g_free(n->rank);
     g_free(n->vein);
     polygon_free(n->margin);
+    holes_free(n->holes);
     g_free(n);
 }

@@ -4,6 +4,7 @@
 #ifndef SIM_NETWORK_H
 #define SIM_NETWORK_H
 
+#include "geom/holes.h"
 #include "geom/polygon.h"
 #include "geom/vec.h"
 
@@ -27,6 +28,7 @@ struct Network {
     uint8_t *rank;        /* [n_edges] 1, 2, … by width at the vein's origin (Hickey 1979) */
     uint32_t *vein;       /* [n_edges] the vein (run of edges of one order) it belongs to, 0 … n_veins-1 */
     Polygon *margin;      /* outline at the end of the run, segments; owned */
+    Holes *holes;         /* of the blade, in segments as the margin is; NULL: none; owned. What lay in them is no part of the network (torn.h). */
     double length;        /* base (0,0) to tip (0,length), segments; 0: unknown */
 };
 

@@ -205,7 +205,7 @@ void crowd_measure(const Simulation *s, Crowd *c);       /* renews what depends 
 void crowds_prepare(Simulation *s);                      /* shows fresh_tree to the squares */
 
 /* Nodes beside each other in memory; a pair of places out of sight follows. */
-enum { FEW = 1024 };
+enum { FEW = 1024, SIGHT_GUARDS = 8 };
 typedef struct {
     uint32_t n;
     uint32_t v[FEW];
@@ -215,8 +215,10 @@ typedef struct {
 /* The fresh nodes that a crowd looks at. */
 typedef struct {
     Few nearest; /* those that may be nearest to a source, ascending */
+    int64_t kin[POINTS_MOST];    /* the nearest once more; in a closed pattern their parents, too, as the upper half */
     double stride2[POINTS_MOST]; /* closed: the squared distances from the nearest to their parents */
     Few rival;   /* closed: those that the nearest one need not exclude */
+    double apart2[FEW][SIGHT_GUARDS]; /* squared distances of rivals from the first of the nearest */
 } Sight;
 bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight); /* FALSE when there are too many, and each source must look for itself */
 

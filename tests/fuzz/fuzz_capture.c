@@ -77,7 +77,6 @@ static void by_threshold(Scan *s, const uint8_t *b)
     def.close = b[5] & 1 ? (b[5] >> 3) : 0.0;
     def.open = b[5] & 2 ? (b[5] >> 3) : 0.0;
     def.each = b[5] & 4;
-    def.keep_holes = b[6] & 1;
     def.keep_stalk = b[6] & 2;
     def.subpixel = b[6] & 4;
     def.square = b[6] & 8 ? 1u + (b[6] >> 4) : 1u;

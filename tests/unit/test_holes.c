@@ -175,11 +175,11 @@ static void test_colours(void)
 /* ---- maps ---- */
 
 /* Integral of a map over the leaf, segments², and the sum of its pixels that lie clear of the rims of holes. */
-static double integral(const VenLeaf *leaf, const Holes *holes, MapId id, double *in_holes)
+static double integral(const VenLeaf *leaf, Holes *holes, MapId id, double *in_holes)
 {
     PaintStyle style = paint_style_default();
     Frame frame = frame_fit(leaf->net->margin->box, 700, true, 0.02);
-    style.holes = holes;
+    leaf->net->holes = holes;
     style.padding = 0;
     Painter *painter = painter_new(leaf->net, &frame, &style);
     Plane *plane = painter_paint(painter, id);
@@ -216,8 +216,8 @@ static void test_maps(void)
     VenParams *p = scan_params(image);
     VenLeaf *leaf = ven_grow(p, 1, NULL, &error);
     g_assert_no_error(error);
-    Affine wide = {.a = leaf->length, .d = leaf->length};
-    Holes *holes = holes_mapped(leaf->ground->holes, &wide);
+    Holes *holes = leaf->net->holes;
+    g_assert_cmpuint(holes->n, ==, 2);
     double in, whole = integral(leaf, NULL, MAP_OPACITY, &in), open;
     g_assert_cmpfloat(in, >, 1000.0);
     g_assert_cmpfloat(fabs(whole - leaf->net->margin->area), <, 1e-3);
@@ -229,7 +229,6 @@ static void test_maps(void)
         integral(leaf, holes, others[i], &in);
         g_assert_cmpfloat(in, ==, 0.0);
     }
-    holes_free(holes);
     ven_leaf_free(leaf);
     ven_params_free(p);
     g_free(image);
@@ -274,7 +273,7 @@ static void test_across(void)
     holes_add(h, hole, 4);
     g_assert_cmpfloat(fabs(h->area - 197.5), <, 1e-9);
     PaintStyle style = paint_style_default();
-    style.holes = h;
+    net->holes = h;
     Frame frame = frame_fit((Box2){0, 0, 60, 40}, 120, false, 0.0);
     Painter *painter = painter_new(net, &frame, &style);
     Plane *plane = painter_paint(painter, MAP_OPACITY);
@@ -284,7 +283,6 @@ static void test_across(void)
     g_assert_cmpfloat(fabs(sum / (frame.scale * frame.scale) - (1600.0 - 97.5)), <, 1e-2);
     plane_free(plane);
     painter_free(painter);
-    holes_free(h);
     network_free(net);
 }
 
@@ -379,6 +377,37 @@ static void test_second_leaf(void)
     leave(dir);
 }
 
+/* Both sides of a sheet are read once: its leaves don't need the files any more. */
+static void test_sheet(void)
+{
+    GError *error = NULL;
+    char *dir = enter(), *front = g_build_filename(dir, "front.png", NULL), *back = g_build_filename(dir, "back.png", NULL);
+    write_pair(front, false);
+    write_pair(back, true);
+    VenParams *p = scan_params(front);
+    set(p, "scan.back", back);
+    GroundScan *sheet = ground_scan_new(p->values, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(ground_scan_leaves(sheet), ==, 2);
+    g_unlink(front);
+    g_unlink(back);
+    double side[2];
+    for (int leaf = 0; leaf < 2; leaf++) {
+        set(p, "scan.leaf", leaf ? "2" : "1");
+        Ground *g = ground_new_on(sheet, p->values, false, &error);
+        g_assert_no_error(error);
+        g_assert_cmpfloat(g->back_off, <, 0.01);
+        side[leaf] = affine_apply(&g->to_back, polygon_centroid(g->outline)).x;
+        ground_unref(g);
+    }
+    g_assert_cmpfloat(fabs(side[0] - side[1]), >, 200.0);
+    ground_scan_free(sheet);
+    ven_params_free(p);
+    g_free(front);
+    g_free(back);
+    leave(dir);
+}
+
 /* ---- the record ---- */
 
 static double fact(const char *record, const char *name)
@@ -419,6 +448,40 @@ static void test_record(void)
     g_free(image);
 }
 
+/* Where outline and veins come from, and how a drawing came to lie on the scan. */
+static void test_origins(void)
+{
+    GError *error = NULL;
+    char *dir = enter(), *image = grape(), *record = record_of(image, NULL);
+    g_assert_nonnull(strstr(record, "\"outline_from\": \"threshold\""));
+    g_assert_nonnull(strstr(record, "\"veins_from\": \"none\""));
+    g_assert_nonnull(strstr(record, "\"base_from\": \"petiole\""));
+    g_assert_null(strstr(record, "laid_by"));
+    g_assert_cmpfloat(fact(record, "beyond_threshold"), >=, fact(record, "holes_area"));
+    g_free(record);
+    VenParams *p = captured(image, dir);
+    VenLeaf *leaf = ven_grow(p, 1, NULL, &error);
+    g_assert_no_error(error);
+    record = ven_leaf_record(leaf);
+    g_assert_nonnull(strstr(record, "\"outline_from\": \"drawing\""));
+    g_assert_nonnull(strstr(record, "\"outline_laid_by\": \"its image 'x_scan.jpg', 930 × 1110 units with a corner at 0,0\""));
+    g_assert_nonnull(strstr(record, "\"channel\": \"red\""));
+    ven_leaf_free(leaf);
+    ven_params_free(p);
+    g_free(record);
+    p = scan_params(image);
+    set(p, "outline.path", "M 300,-700 L 900,-650 L 500,-80 Z");
+    leaf = ven_grow(p, 1, NULL, &error);
+    g_assert_no_error(error);
+    record = ven_leaf_record(leaf);
+    g_assert_nonnull(strstr(record, "\"outline_from\": \"path\""));
+    ven_leaf_free(leaf);
+    ven_params_free(p);
+    g_free(record);
+    g_free(image);
+    leave(dir);
+}
+
 /* The threshold of a 16-bit image is written as scan.threshold takes it. */
 static void test_deep(void)
 {
@@ -451,7 +514,9 @@ int main(int argc, char **argv)
     g_test_add_func("/holes/across", test_across);
     g_test_add_func("/holes/wrong-back", test_wrong_back);
     g_test_add_func("/holes/second-leaf", test_second_leaf);
+    g_test_add_func("/holes/sheet", test_sheet);
     g_test_add_func("/holes/record", test_record);
+    g_test_add_func("/holes/origins", test_origins);
     g_test_add_func("/holes/deep", test_deep);
     return g_test_run();
 }

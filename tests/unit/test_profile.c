@@ -311,12 +311,7 @@ static GPtrArray *capture_ok(const Scan *s, const ProfileDef *def)
         for (k = 0; k < p->outline->n; k++)
             twice += vec_cross(p->outline->v[k], p->outline->v[(k + 1) % p->outline->n]);
         g_assert_cmpfloat(twice, >, 0.0);
-        for (k = 0; k < p->n_holes; k++) {
-            twice = 0.0;
-            for (m = p->hole_start[k]; m < p->hole_start[k + 1]; m++)
-                twice += vec_cross(p->hole[m], p->hole[m + 1 < p->hole_start[k + 1] ? m + 1 : p->hole_start[k]]);
-            g_assert_cmpfloat(twice, <, 0.0);
-        }
+        g_assert_true(p->beyond >= 0.0 && p->beyond <= p->area + p->perimeter);
     }
     return a;
 }
@@ -623,7 +618,7 @@ static void test_given_ends(void)
     scan_free(s);
 }
 
-/* A ring with an island: filled, kept; by pixels and by levels. */
+/* A ring with an island: outline, and what it encloses; by pixels and by levels. */
 static void test_holes(void)
 {
     Scan *s = paper(300, 300);
@@ -637,15 +632,9 @@ static void test_holes(void)
         def.tolerance = 0.0;
         GPtrArray *a = capture_ok(s, &def);
         const Profile *p = a->pdata[0];
-        g_assert_cmpuint(p->n_holes, ==, 0);
         g_assert_cmpfloat(fabs(p->area / (PI * 120 * 100) - 1.0), <=, 0.002);
         g_assert_cmpfloat(fabs(p->perimeter / 692.6 - 1.0), <=, levels ? 0.005 : 0.08);
-        g_ptr_array_free(a, TRUE);
-        def.keep_holes = true;
-        a = capture_ok(s, &def);
-        p = a->pdata[0];
-        g_assert_cmpuint(p->n_holes, ==, 2);
-        g_assert_cmpfloat(fabs(p->area / (PI * (120 * 100 - 50 * 40 - 15 * 15)) - 1.0), <=, 0.002);
+        g_assert_cmpfloat(fabs((p->area - p->beyond) / (PI * (120 * 100 - 50 * 40 - 15 * 15)) - 1.0), <=, 0.002);
         g_assert_cmpuint(p->outline->n, <=, p->nodes + 2);
         g_ptr_array_free(a, TRUE);
     }
@@ -783,7 +772,6 @@ static void test_anything(void)
         def.open = k % 13 ? 0.0 : 2.0 * uniform(80, 16 * k + 7);
         def.each = k & 1;
         def.least_area = uniform(80, 16 * k + 8);
-        def.keep_holes = k & 2;
         def.keep_stalk = k & 4;
         def.square = 1 + k % 6;
         def.subpixel = k & 8;
@@ -849,20 +837,20 @@ static void test_references(void)
     for (uint32_t k = 0; k < G_N_ELEMENTS(SCANS); k++) {
         const Reference *r = &SCANS[k];
         Scan *s = real_scan(r->file);
-        for (int variant = 0; s && variant < 4; variant++) {
+        for (int levels = 0; s && levels < 2; levels++) {
             ProfileDef def = profile_def_default();
             def.threshold.channel = r->channel;
             def.keep_stalk = true;
-            def.subpixel = variant & 1;
-            def.keep_holes = variant & 2;
+            def.subpixel = levels;
             gint64 start = g_get_monotonic_time();
             GPtrArray *a = capture_ok(s, &def);
             const Profile *p = a->pdata[0];
-            double area = def.keep_holes ? r->kept : r->filled, length = def.subpixel ? r->levels : r->binary;
-            g_test_message("%s %s, holes %s: area %.0f (%+.3f %%), perimeter %.0f (%+.2f %%), %u to %u nodes, %.2f s", r->file, def.subpixel ? "levels" : "binary",
-                           def.keep_holes ? "kept" : "filled", p->area, 100.0 * (p->area / area - 1.0), p->perimeter, 100.0 * (p->perimeter / length - 1.0),
-                           p->nodes, p->outline->n, (double)(g_get_monotonic_time() - start) * 1e-6);
-            g_assert_cmpfloat(fabs(p->area / area - 1.0), <=, 0.005);
+            double kept = p->area - p->beyond, length = levels ? r->levels : r->binary;
+            g_test_message("%s %s: area %.0f (%+.3f %%), without what is beyond the threshold %.0f (%+.3f %%), perimeter %.0f (%+.2f %%), %u to %u nodes, %.2f s",
+                           r->file, levels ? "levels" : "binary", p->area, 100.0 * (p->area / r->filled - 1.0), kept, 100.0 * (kept / r->kept - 1.0),
+                           p->perimeter, 100.0 * (p->perimeter / length - 1.0), p->nodes, p->outline->n, (double)(g_get_monotonic_time() - start) * 1e-6);
+            g_assert_cmpfloat(fabs(p->area / r->filled - 1.0), <=, 0.005);
+            g_assert_cmpfloat(fabs(kept / r->kept - 1.0), <=, 0.005);
             g_assert_cmpfloat(fabs(p->perimeter / length - 1.0), <=, g_str_equal(r->file, "grape.jpg") ? 0.1 : 0.03); /* halving smooths the margin */
             assert_close(p->base, r->base, 40.0);
             assert_close(p->tip, r->tip, 25.0);

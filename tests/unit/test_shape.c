@@ -515,6 +515,45 @@ static void test_fictitious(void)
     ven_params_free(p);
 }
 
+/* ---- narrow places ---- */
+
+/* The midrib passes a notch, nearer than mesh.clearance, before it is as long as mesh.min_length: the leaf bends all the same. */
+static void test_notch(void)
+{
+    GError *error = NULL;
+    const Vec2 margin[] = {{-5, 0}, {5, 0}, {20, 5}, {0.2, 8}, {20, 11}, {40, 50}, {0, 100}, {-40, 50}};
+    VenParams *p = ven_params_new();
+    Network *net = network_new(101, 100);
+    net->margin = polygon_new(margin, G_N_ELEMENTS(margin));
+    net->length = 100.0;
+    net->n_veins = 1;
+    for (uint32_t v = 0; v <= 100; v++)
+        net->node[v] = vec2(0.0, v);
+    for (uint32_t e = 0; e < 100; e++) {
+        net->tail[e] = e;
+        net->head[e] = e + 1;
+        net->width[e] = net->flow[e] = net->order[e] = net->rank[e] = 1;
+    }
+    VenLeaf leaf = {.params = p->values, .net = net, .length = 100.0, .stage = net->margin->box};
+    SkeletonDef def = settings_skeleton(p->values, 100.0, 1.0);
+    g_assert_null(skeleton_new(net, &def, &error)); /* as it is asked for */
+    g_assert_error(error, SKELETON_ERROR, SKELETON_ERROR_EMPTY);
+    g_clear_error(&error);
+    VenShape *s = shape_of(&leaf);
+    g_assert_cmpuint(s->skeleton->n_sequences, ==, 1);
+    g_assert_cmpfloat(s->skeleton->sequence[0].length, >, 90.0);
+    ven_shape_free(s);
+    ven_params_set(p, "mesh.max_order", "1", &error);
+    for (uint32_t e = 0; e < 100; e++)
+        net->order[e] = 2;
+    g_assert_null(ven_shape(&leaf, &error)); /* what was asked for is named, not what was tried */
+    g_assert_error(error, SKELETON_ERROR, SKELETON_ERROR_EMPTY);
+    g_assert_nonnull(strstr(error->message, "of order up to 1, at least 12 segments long"));
+    g_clear_error(&error);
+    network_free(net);
+    ven_params_free(p);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -542,5 +581,6 @@ int main(int argc, char **argv)
     g_test_add_func("/shape/repose", test_repose);
     g_test_add_func("/shape/blend", test_blend);
     g_test_add_func("/shape/fictitious", test_fictitious);
+    g_test_add_func("/shape/notch", test_notch);
     return g_test_run();
 }
