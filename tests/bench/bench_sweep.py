@@ -9,7 +9,7 @@ a leaf that takes no time, for the peak memory. --quick: a fifth of the leaves, 
 does other things as well, go by the leaves a minute of processor time.
 
 What bounds it: of a training leaf, painting takes a good half, most of it the exact union of strokes in each pixel, growing a quarter, and PNG files a twenty-fifth.
-Of a full set at 2048 writing takes two fifths, most of it compression of EXR, and painting a third. Leaves share nothing but memory and caches.
+Of a full set at 2048 writing takes a good half, nearly all of it zlib's, and painting a fifth. Leaves share nothing but memory and caches.
 """
 import collections
 import os
@@ -80,9 +80,15 @@ def shares(command, source, folder):
     return sums
 
 
-def part_of(sweep, text, count):
-    """The sweep with so many variants, beside the sweep, as it names files."""
-    name = os.path.join(os.path.dirname(sweep), f".bench-{os.getpid()}.ini")
+def part_of(sweep, text, count, folder):
+    """The sweep with so many variants, in a folder that looks like the sweep's own, as it names files beside it and above it."""
+    home = os.path.dirname(os.path.abspath(sweep))
+    above, here = os.path.dirname(home), os.path.join(folder, os.path.basename(home))
+    for name in os.listdir(above):
+        if name != os.path.basename(home):
+            os.symlink(os.path.join(above, name), os.path.join(folder, name))
+    shutil.copytree(home, here)
+    name = os.path.join(here, os.path.basename(sweep))
     with open(name, "w", encoding="utf-8") as file:
         file.write(re.sub(r"(?m)^count = \d+$", f"count = {count}", text))
     return name
@@ -91,8 +97,8 @@ def part_of(sweep, text, count):
 def rates(venation, sweep, text, what, options, count):
     every = sorted(os.sched_getaffinity(0))
     rate = {}
-    name = part_of(sweep, text, count)
-    try:
+    with tempfile.TemporaryDirectory() as folder:
+        name = part_of(sweep, text, count, folder)
         for used in sorted({1, len(every)}):
             with tempfile.TemporaryDirectory() as out:
                 run = [venation, "sweep", name, "-o", out, "-q", "--threads", str(used), *options]
@@ -103,10 +109,7 @@ def rates(venation, sweep, text, what, options, count):
             print(f"| {what}: scaling | {len(every)} | | | {rate[len(every)] / rate[1]:.2f} times | | |")
         with tempfile.TemporaryDirectory() as out:
             run = [venation, "sweep", name, "-o", os.path.join(out, "out"), "-q", "--threads", "1", *options]
-            part = shares(run, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../src"), out)
-    finally:
-        os.unlink(name)
-    return part
+            return shares(run, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../src"), out)
 
 
 def main():
@@ -134,6 +137,8 @@ def main():
     for what, part in parts.items():
         if part:
             print(f"\n{what}: " + ", ".join(f"{name} {share:.0f} %" for name, share in part.most_common() if share >= 0.5))
+        else:
+            print(f"\n{what}: no perf, so no profile")
 
 
 if __name__ == "__main__":
