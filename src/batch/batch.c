@@ -81,13 +81,16 @@ uint64_t batch_bytes(const BatchDef *def, uint64_t index)
     return bytes;
 }
 
-/* What became of it in an earlier run, if its parameters were the same. */
+/* What became of it in an earlier run, if its parameters were the same and its files are still what they were. A data set is read by programs that show
+ * nobody an emptied mask, so its files are read, too. */
 static RowOutcome outcome_so_far(const Task *t)
 {
     Row row;
     row_read(t->def->sweep, t->def->out, t->variant.index, &row);
     char *key = row.outcome == ROW_MISSING ? NULL : row_key(&row);
     RowOutcome outcome = key && strcmp(key, t->key) == 0 ? row.outcome : ROW_MISSING;
+    if (outcome == ROW_GROWN && !row_is_whole(t->def->out, &row, t->def->labels))
+        outcome = ROW_MISSING;
     g_free(key);
     row_clear(&row);
     return outcome;
@@ -117,14 +120,14 @@ static gboolean picture(const VenLeaf *leaf, const Task *t, GError **error)
     return ok;
 }
 
-/* The row comes last, and then the folder moves. */
+/* The row comes last; when the disk has it all the folder moves. */
 static gboolean finish(const VenLeaf *leaf, const Task *t, GError **error)
 {
     FolderSum sum;
     if (!batch_sum_folder(t->made, &sum, error))
         return FALSE;
     char *row = row_grown(t->def->sweep, &t->variant, t->key, leaf, &sum), *path = g_build_filename(t->made, "sweep.json", NULL);
-    gboolean ok = batch_write_row(row, path, error);
+    gboolean ok = batch_write_row(row, path, error) && batch_sync_folder(t->made, error);
     if (ok && outcome_so_far(t) == ROW_GROWN) /* another run was faster, and its leaf is the same */
         batch_remove(t->made);
     else
@@ -301,6 +304,7 @@ gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state
     b.running = b.workers;
     g_mutex_init(&b.lock);
     g_cond_init(&b.ended);
+    char *failures = g_build_filename(def->out, "failed", NULL);
     GThread **thread = g_new(GThread *, b.workers);
     for (unsigned i = 0; i < b.workers; i++)
         thread[i] = g_thread_new("leaf", work, &b);
@@ -310,6 +314,8 @@ gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state
     for (unsigned i = 0; i < b.workers; i++)
         g_thread_join(thread[i]);
     g_free(thread);
+    g_rmdir(failures); /* if it is empty */
+    g_free(failures);
     g_mutex_clear(&b.lock);
     g_cond_clear(&b.ended);
     keys_free(b.keys);

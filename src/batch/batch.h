@@ -44,11 +44,18 @@ void batch_remove(const char *folder);
 /* What is there of all variants: missing ones, and those from other parameters, which count as missing. */
 typedef struct {
     uint64_t grown, failed, missing;
-    uint64_t stale; /* of the missing ones: there, but of other parameters */
+    uint64_t stale, damaged;             /* of the missing ones: leaves of other parameters or options, and those whose files are not what they were */
+    uint64_t first_stale, first_damaged; /* index of one of them */
 } BatchCount;
 
-/* Counts alone. FALSE with an error if it was stopped. */
-gboolean batch_count(const BatchDef *def, BatchCount *count, GError **error);
+/* How leaves that are there are looked at: their rows alone, number and length of their files too, or all that is in them. */
+typedef enum { BATCH_ROWS, BATCH_SIZES, BATCH_CONTENTS } BatchCheck;
+
+/* Counts this part alone. FALSE with an error if it was stopped. */
+gboolean batch_count(const BatchDef *def, BatchCheck check, BatchCount *count, GError **error);
+
+/* The parameters of a leaf that is there whose values are not those that it would have now, by name; "" if none is known. Free it. */
+char *batch_differing(const BatchDef *def, uint64_t index);
 
 /* Writes <out>/manifest.jsonl and manifest.csv from all rows, in order, each in `staging`, and moved. Memory does not go with the number of variants.
  * Rows of other parameters are written as missing. */

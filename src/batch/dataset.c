@@ -215,11 +215,20 @@ static gboolean write_card(const Dataset *d, GError **error)
         "images        the leaf as a scanner sees it\n"
         "lamina        part of the pixel that the blade covers, 0 to 255\n"
         "vein          part of the pixel that veins cover, 0 to 255\n"
-        "order         order of the vein at the pixel, 1 primary; 0 none\n"
-        "areole        number of the areole at the pixel, 16 bits; 0 none\n"
-        "annotations   COCO, for the files in images: lamina and areoles as polygons, the veins of a leaf as one run-length encoded crowd\n\n"
+        "order         order of the vein at the pixel, 1 primary; 0 none. A pixel is a vein's where its centre lies in the vein drawn at least a pixel\n"
+        "              wide, so that thin veins are unbroken lines, and the blade covers half of it or more; of several veins the lowest order's\n"
+        "areole        number of the areole around the pixel's centre, 16 bits; 0 none, where veins cover half of the pixel or more, and where the\n"
+        "              blade covers less than half. Thin veins that cover less are drawn in order alone: such pixels have an order and an areole\n"
+        "annotations   COCO, for the files in images, iscrowd 0:\n"
+        "              lamina  a polygon, the outer margin within a quarter of a pixel\n"
+        "              areole  run-length encoded: the pixels that hold its number in areole, which \"label\" repeats; area and box are theirs. Areoles\n"
+        "                      of fewer than %d pixels are left out here, not there\n"
+        "              vein    run-length encoded, all veins of a leaf as one: the pixels whose order is not 0\n"
+        "              Where there is no pixel there is no annotation. Some loaders take run lengths only if told to (detectron2: mask_format bitmask)\n\n"
+        "Leaves are upright and centred: turning, scaling and shifting are left to the loader. Leaves of open venation (veins.pattern), and of closed\n"
+        "venation with a large veins.kill_distance, have few areoles or none.\n\n"
         "What each leaf was grown from is in ../manifest.csv, by the name of its files.\n",
-        ven_version(), name, d->n[0], d->n[1], d->by_seed ? "seed" : "variant");
+        ven_version(), name, d->n[0], d->n[1], d->by_seed ? "seed" : "variant", LABEL_LEAST_AREOLE);
     gboolean ok = export_text(text, strlen(text), path, error);
     g_free(text);
     g_free(name);

@@ -79,6 +79,48 @@ gboolean batch_move_folder(const char *from, const char *to, GError **error)
     return ok;
 }
 
+static gboolean sync_path(const char *path, int how, GError **error)
+{
+    int file = g_open(path, how | O_CLOEXEC, 0);
+    if (file < 0)
+        return batch_fail(error, "can't be read", path);
+    gboolean ok = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; /* some file systems have no such thing */
+    ok = ok || batch_fail(error, "can't write", path);
+    close(file);
+    return ok;
+}
+
+/* All of the file system at once: of ten files each alone would wait for its own entry in the journal. */
+static bool sync_at_once(const char *folder)
+{
+#ifdef __linux__
+    int dir = g_open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
+    bool ok = dir >= 0 && syncfs(dir) == 0;
+    if (dir >= 0)
+        close(dir);
+    return ok;
+#else
+    return false;
+#endif
+}
+
+gboolean batch_sync_folder(const char *folder, GError **error)
+{
+    if (sync_at_once(folder))
+        return TRUE; /* if not, for others' files perhaps, its own will tell */
+    GDir *dir = g_dir_open(folder, 0, error);
+    const char *name;
+    gboolean ok = dir != NULL;
+    while (ok && (name = g_dir_read_name(dir))) {
+        char *path = g_build_filename(folder, name, NULL);
+        ok = sync_path(path, O_RDONLY, error);
+        g_free(path);
+    }
+    if (dir)
+        g_dir_close(dir);
+    return ok && sync_path(folder, O_RDONLY | O_DIRECTORY, error);
+}
+
 gboolean batch_place_file(const char *staging, const char *out, const char *name, GError **error)
 {
     char *from = g_build_filename(staging, name, NULL), *to = g_build_filename(out, name, NULL);
@@ -91,7 +133,14 @@ gboolean batch_place_file(const char *staging, const char *out, const char *name
 gboolean batch_write_row(const char *row, const char *path, GError **error)
 {
     char *line = g_strconcat(row, "\n", NULL);
-    gboolean ok = make_parent(path, error) && export_text(line, strlen(line), path, error);
+    GError *failure = NULL;
+    gboolean ok = make_parent(path, error) && export_text(line, strlen(line), path, &failure);
+    if (g_error_matches(failure, G_FILE_ERROR, G_FILE_ERROR_NOENT)) { /* another run removed the folder, which was empty */
+        g_clear_error(&failure);
+        ok = make_parent(path, error) && export_text(line, strlen(line), path, &failure);
+    }
+    if (failure)
+        g_propagate_error(error, failure);
     g_free(line);
     return ok;
 }
@@ -129,6 +178,28 @@ uint64_t batch_folder_bytes(const char *folder)
     return bytes;
 }
 
+/* The row tells of the others; hidden files, as a file manager leaves them, are none of ours. */
+static bool is_summed(const char *name) { return *name != '.' && strcmp(name, "sweep.json") != 0; }
+
+gboolean batch_measure_folder(const char *folder, FolderSum *out)
+{
+    GDir *dir = g_dir_open(folder, 0, NULL);
+    const char *name;
+    *out = (FolderSum){0};
+    while (dir && (name = g_dir_read_name(dir))) {
+        char *path = g_build_filename(folder, name, NULL);
+        GStatBuf info;
+        if (is_summed(name) && g_stat(path, &info) == 0) {
+            out->files++;
+            out->bytes += (uint64_t)info.st_size;
+        }
+        g_free(path);
+    }
+    if (dir)
+        g_dir_close(dir);
+    return dir != NULL;
+}
+
 /* Takes a file in, a piece at a time. */
 static gboolean add_file(const char *path, GChecksum *sum, uint64_t *bytes, GError **error)
 {
@@ -155,11 +226,14 @@ gboolean batch_sum_folder(const char *folder, FolderSum *out, GError **error)
     GPtrArray *names = list_folder(folder, error);
     if (!names)
         return FALSE;
-    *out = (FolderSum){.files = names->len};
+    *out = (FolderSum){0};
     GChecksum *all = g_checksum_new(G_CHECKSUM_SHA256), *one = g_checksum_new(G_CHECKSUM_SHA256);
     gboolean ok = TRUE;
     for (guint i = 0; ok && i < names->len; i++) {
+        if (!is_summed(names->pdata[i]))
+            continue;
         char *path = g_build_filename(folder, names->pdata[i], NULL);
+        out->files++;
         g_checksum_reset(one);
         ok = add_file(path, one, &out->bytes, error);
         char *line = g_strdup_printf("%s  %s\n", g_checksum_get_string(one), (char *)names->pdata[i]);

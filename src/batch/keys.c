@@ -55,7 +55,7 @@ char *keys_of(Keys *k, const Params *p, uint64_t seed)
 {
     const BatchDef *d = k->def;
     GChecksum *sum = g_checksum_new(G_CHECKSUM_SHA256);
-    char *text = params_to_file(p), *rest = g_strdup_printf("%s rows 2 %" G_GUINT64_FORMAT " %d %d %u %d", ven_version(), seed, d->models != 0, d->labels != 0,
+    char *text = params_to_file(p), *rest = g_strdup_printf("%s rows 3 %" G_GUINT64_FORMAT " %d %d %u %d", ven_version(), seed, d->models != 0, d->labels != 0,
                                                             d->picture, d->picture && d->specimen);
     g_checksum_update(sum, (const guchar *)rest, -1);
     g_checksum_update(sum, (const guchar *)text, -1);

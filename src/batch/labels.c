@@ -4,7 +4,6 @@
 #include "export/sink.h"
 #include "geom/simplify.h"
 #include "lib/writer.h"
-#include "sim/areole.h"
 
 static const double tolerance = 0.25; /* pixels */
 
@@ -72,49 +71,95 @@ static void put_lamina(GString *s, const Polygon *margin, const Frame *f)
     g_free(ring);
 }
 
-static void put_areoles(Sink *out, const Network *net, const Frame *f)
+/* ---- pixels ---- */
+
+/* The pixels of a label. The box leaves out its last column and row; of no pixel it is of no use. */
+typedef struct {
+    uint64_t area;
+    uint32_t x0, y0, x1, y1;
+} Region;
+
+static void region_add(Region *r, uint32_t x, uint32_t y)
 {
-    Areoles *a = network_areoles(net);
-    GArray *ring = g_array_new(FALSE, FALSE, sizeof(Vec2));
-    for (uint32_t i = 0; i < a->n; i++) {
-        uint32_t outer = a->first[i], from = a->ring[outer], n = a->ring[outer + 1] - from;
-        g_array_set_size(ring, n + 1);
-        for (uint32_t k = 0; k <= n; k++)
-            g_array_index(ring, Vec2, k) = pixel(f, a->place[a->node[from + k % n]]);
-        put_ring(out->text, (const Vec2 *)(const void *)ring->data, n, a->area[i] * f->scale * f->scale, LABEL_AREOLE);
-        sink_drain(out);
-    }
-    g_array_free(ring, TRUE);
-    areoles_free(a);
+    if (r->area++ == 0)
+        *r = (Region){1, x, y, x + 1, y + 1};
+    r->x0 = MIN(r->x0, x);
+    r->x1 = MAX(r->x1, x + 1);
+    r->y1 = y + 1; /* rows come from the top */
 }
 
-/* Runs of pixels down the columns, outside first, as COCO has them. */
-static void put_veins(GString *s, const Plane *mask)
+/* By label, up to the map's largest; with `any` all labels are 1. */
+static Region *regions_new(const Plane *map, bool any)
 {
-    uint32_t w = mask->width, h = mask->height;
-    uint64_t run = 0, area = 0;
-    bool inside = false, first = true;
-    Box2 box = box_empty();
-    g_string_append_printf(s, "{\"category_id\": %d, \"segmentation\": {\"size\": [%u, %u], \"counts\": [", LABEL_VEIN, h, w);
-    for (uint32_t x = 0; x < w; x++)
-        for (uint32_t y = 0; y < h; y++) {
-            bool vein = mask->px[(gsize)y * w + x] >= 0.5f;
-            if (vein != inside) {
-                g_string_append_printf(s, first ? "%" G_GUINT64_FORMAT : ", %" G_GUINT64_FORMAT, run);
-                first = false;
-                inside = vein;
-                run = 0;
-            }
-            run++;
-            if (vein) {
-                area++;
-                box = box_add(box_add(box, vec2(x, y)), vec2(x + 1.0, y + 1.0));
-            }
+    Region *region = g_new0(Region, any ? 2 : (gsize)map->high + 1);
+    for (uint32_t y = 0; y < map->height; y++)
+        for (uint32_t x = 0; x < map->width; x++) {
+            uint32_t label = (uint32_t)map->px[(gsize)y * map->width + x];
+            if (label > 0)
+                region_add(&region[any ? 1 : label], x, y);
         }
-    g_string_append_printf(s, first ? "%" G_GUINT64_FORMAT "]}" : ", %" G_GUINT64_FORMAT "]}", run);
-    g_string_append_printf(s, ", \"area\": %" G_GUINT64_FORMAT ", ", area);
-    put_box(s, area ? box : (Box2){0.0, 0.0, 0.0, 0.0});
-    g_string_append(s, ", \"iscrowd\": 1}\n");
+    return region;
+}
+
+static void put_run(GString *s, uint64_t n, bool first) { g_string_append_printf(s, first ? "%" G_GUINT64_FORMAT : ", %" G_GUINT64_FORMAT, n); }
+
+/* Runs of pixels down the columns, outside first, as COCO has them; label 0: of any label. */
+static void put_runs(GString *s, const Plane *map, const Region *r, uint32_t label)
+{
+    uint64_t begin = 0, end = 0, all = (uint64_t)map->width * map->height; /* of the run under way */
+    for (uint32_t x = r->x0; x < r->x1; x++)
+        for (uint32_t y = r->y0; y < r->y1; y++) {
+            uint64_t at = (uint64_t)x * map->height + y;
+            float value = map->px[(gsize)y * map->width + x];
+            if (label > 0 ? value != (float)label : value <= 0.0f)
+                continue;
+            if (end == 0 || at > end) {
+                if (end > 0)
+                    put_run(s, end - begin, false);
+                put_run(s, at - end, end == 0);
+                begin = at;
+            }
+            end = at + 1;
+        }
+    put_run(s, end - begin, false);
+    if (all > end)
+        put_run(s, all - end, false);
+}
+
+static void put_region(GString *s, const Plane *map, const Region *r, uint32_t label, int category)
+{
+    g_string_append_printf(s, "{\"category_id\": %d, ", category);
+    if (label > 0)
+        g_string_append_printf(s, "\"label\": %u, ", label);
+    g_string_append_printf(s, "\"segmentation\": {\"size\": [%u, %u], \"counts\": [", map->height, map->width);
+    put_runs(s, map, r, label);
+    g_string_append_printf(s, "]}, \"area\": %" G_GUINT64_FORMAT ", ", r->area);
+    put_box(s, (Box2){r->x0, r->y0, r->x1, r->y1});
+    g_string_append(s, ", \"iscrowd\": 0}\n");
+}
+
+static void put_areoles(Sink *out, Painter *painter)
+{
+    Plane *map = painter_paint(painter, MAP_AREOLE);
+    Region *region = regions_new(map, false);
+    for (uint32_t label = 1; label <= (uint32_t)map->high; label++)
+        if (region[label].area >= LABEL_LEAST_AREOLE) {
+            put_region(out->text, map, &region[label], label, LABEL_AREOLE);
+            sink_drain(out);
+        }
+    g_free(region);
+    plane_free(map);
+}
+
+/* Not by coverage, which loses veins thinner than a pixel: the map of orders draws each at least one pixel wide. */
+static void put_veins(Sink *out, Painter *painter)
+{
+    Plane *map = painter_paint(painter, MAP_VEIN_ORDER);
+    Region *region = regions_new(map, true);
+    if (region[1].area > 0)
+        put_region(out->text, map, &region[1], 0, LABEL_VEIN);
+    g_free(region);
+    plane_free(map);
 }
 
 gboolean labels_write(const VenLeaf *leaf, const char *path, GError **error)
@@ -124,13 +169,13 @@ gboolean labels_write(const VenLeaf *leaf, const char *path, GError **error)
     if (!out)
         return FALSE;
     put_lamina(out->text, leaf->net->margin, &frame);
-    put_areoles(out, leaf->net, &frame);
     Writer w;
     writer_init(&w, leaf, ".", "");
     Painter *painter = writer_painter(&w, &frame);
-    Plane *mask = painter_paint(painter, MAP_VEIN_MASK);
-    put_veins(out->text, mask);
-    plane_free(mask);
+    gboolean wanted[MAP_COUNT] = {[MAP_AREOLE] = TRUE, [MAP_VEIN_ORDER] = TRUE};
+    painter_expect(painter, wanted);
+    put_areoles(out, painter);
+    put_veins(out, painter);
     painter_free(painter);
     writer_clear(&w);
     return sink_close(out, error);

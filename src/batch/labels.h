@@ -8,9 +8,12 @@
 enum { LABEL_LAMINA = 1, LABEL_AREOLE, LABEL_VEIN, LABEL_LAST = LABEL_VEIN };
 const char *label_category(int id);
 
-/* Writes the annotations of the leaf's maps, one JSON object a line, without numbers of image and annotation: the lamina and each areole as a polygon, in
- * pixels from the top left corner, simplified within a quarter of a pixel (an areole that holds islands by its outer boundary); all veins as one run-length
- * encoded crowd, of pixels that veins cover by half or more. */
+/* Areoles of fewer pixels are left out: they are too small to be told from noise, and some have no pixel at all. */
+enum { LABEL_LEAST_AREOLE = 16 };
+
+/* Writes the annotations of the leaf's maps, one JSON object a line, without numbers of image and annotation: the lamina as a polygon, in pixels from the
+ * top left corner, simplified within a quarter of a pixel; each areole run-length encoded, of the pixels that hold its number ("label") in the map of
+ * areoles; all veins as one, run-length encoded, of all pixels that have an order in the map of orders. None is without a pixel. */
 gboolean labels_write(const VenLeaf *leaf, const char *path, GError **error);
 
 #endif

@@ -11,6 +11,7 @@ typedef struct {
     const BatchDef *def;
     Keys *keys;
     Sink *lines, *table;
+    BatchCheck check;
 } Manifest;
 
 /* A row of another run's parameters is none of ours. */
@@ -93,24 +94,33 @@ static void add_row(Manifest *m, const char *json)
     sink_drain(m->table);
 }
 
+static void note(uint64_t *count, uint64_t *first, bool found, uint64_t index)
+{
+    *count += found;
+    if (found)
+        *first = MIN(*first, index);
+}
+
 static gboolean fill(Manifest *m, BatchCount *count, GError **error)
 {
     const Sweep *s = m->def->sweep;
     gboolean ok = TRUE;
-    *count = (BatchCount){0};
+    *count = (BatchCount){.first_stale = UINT64_MAX, .first_damaged = UINT64_MAX};
     if (m->table)
         each_column(s, add_heading, m->table->text, NULL);
-    for (uint64_t i = 0; i < sweep_count(s) && ok; i++) {
+    for (uint64_t i = m->def->shard; i < sweep_count(s) && ok; i += m->def->shards) {
         Row row;
         row_read(s, m->def->out, i, &row);
-        bool there = row.outcome != ROW_MISSING && is_current(m, &row);
+        bool current = row.outcome != ROW_MISSING && is_current(m, &row), grown = row.outcome == ROW_GROWN;
+        bool damaged = current && grown && m->check != BATCH_ROWS && !row_is_whole(m->def->out, &row, m->check == BATCH_CONTENTS), there = current && !damaged;
         char *missing = there ? NULL : row_missing(s, &row.variant);
         if (m->table)
             add_row(m, there ? row.json : missing);
-        count->grown += there && row.outcome == ROW_GROWN;
-        count->failed += there && row.outcome == ROW_FAILED;
+        count->grown += there && grown;
+        count->failed += there && !grown;
         count->missing += !there;
-        count->stale += !there && row.outcome != ROW_MISSING;
+        note(&count->stale, &count->first_stale, grown && !current, i);
+        note(&count->damaged, &count->first_damaged, damaged, i);
         g_free(missing);
         row_clear(&row);
         ok = watch_tick(&m->def->watch, (double)(i + 1) / (double)sweep_count(s), error);
@@ -118,9 +128,9 @@ static gboolean fill(Manifest *m, BatchCount *count, GError **error)
     return ok;
 }
 
-gboolean batch_count(const BatchDef *def, BatchCount *count, GError **error)
+gboolean batch_count(const BatchDef *def, BatchCheck check, BatchCount *count, GError **error)
 {
-    Manifest m = {.def = def, .keys = keys_new(def)};
+    Manifest m = {.def = def, .keys = keys_new(def), .check = check};
     gboolean ok = fill(&m, count, error);
     keys_free(m.keys);
     return ok;
@@ -140,7 +150,7 @@ gboolean manifest_write(const BatchDef *def, BatchCount *count, GError **error)
 {
     const char *in = def->staging ? def->staging : def->out;
     char *lines = g_build_filename(in, "manifest.jsonl", NULL), *table = g_build_filename(in, "manifest.csv", NULL);
-    Manifest m = {.def = def, .keys = keys_new(def)};
+    Manifest m = {.def = def, .keys = keys_new(def), .check = BATCH_SIZES};
     m.lines = sink_open(lines, error);
     m.table = m.lines ? sink_open(table, error) : NULL;
     gboolean ok = m.table && fill(&m, count, error);

@@ -1,4 +1,5 @@
-/* What else is in the output folder: other runs at work, and leaves of former sweep files. */
+/* What else is in the output folder: other runs at work, leaves of former sweep files and of other parameters. */
+#include <json-glib/json-glib.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -112,6 +113,75 @@ void batch_unnamed(const BatchDef *def, BatchNames *out)
     }
     if (dir)
         g_dir_close(dir);
+}
+
+/* ---- leaves of other parameters ---- */
+
+static bool same_list(JsonArray *found, const double *wanted, guint n, guint each)
+{
+    if (json_array_get_length(found) != n)
+        return false;
+    for (guint i = 0; i < n * each; i++) {
+        JsonNode *node = json_array_get_element(found, i / each);
+        JsonArray *point = each > 1 && JSON_NODE_HOLDS_ARRAY(node) ? json_node_get_array(node) : NULL;
+        if (each > 1 && !(point && json_array_get_length(point) == each))
+            return false;
+        if ((point ? json_array_get_double_element(point, i % each) : json_node_get_double(node)) != wanted[i])
+            return false;
+    }
+    return true;
+}
+
+/* Whether a leaf's record has this value of the parameter. */
+static bool same_value(JsonNode *found, const Params *p, ParamId id)
+{
+    ParamType type = param_info(id)->type;
+    if (type == TYPE_NUMBERS || type == TYPE_POINTS) {
+        uint32_t n;
+        const double *list = params_list(p, id, &n);
+        return JSON_NODE_HOLDS_ARRAY(found) && same_list(json_node_get_array(found), list, n, type == TYPE_POINTS ? 2 : 1);
+    }
+    if (!JSON_NODE_HOLDS_VALUE(found))
+        return false;
+    if (type == TYPE_NUMBER || type == TYPE_INTEGER)
+        return json_node_get_double(found) == (type == TYPE_NUMBER ? params_number(p, id) : (double)params_integer(p, id));
+    if (type == TYPE_SWITCH)
+        return !json_node_get_boolean(found) == !params_switch(p, id);
+    char *text = params_format(p, id);
+    bool same = g_strcmp0(text, json_node_get_string(found)) == 0;
+    g_free(text);
+    return same;
+}
+
+static void list_differing(JsonObject *sections, const Params *p, GString *out)
+{
+    for (int i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = param_info((ParamId)i);
+        JsonNode *section = json_object_get_member(sections, info->section);
+        JsonNode *found = section && JSON_NODE_HOLDS_OBJECT(section) ? json_object_get_member(json_node_get_object(section), info->key) : NULL;
+        if (found && !same_value(found, p, (ParamId)i))
+            g_string_append_printf(out, "%s%s.%s", out->len ? ", " : "", info->section, info->key);
+    }
+}
+
+char *batch_differing(const BatchDef *def, uint64_t index)
+{
+    GString *names = g_string_new(NULL);
+    Row row;
+    row_read(def->sweep, def->out, index, &row);
+    char *path = g_strdup_printf("%s/%s/%s.json", def->out, row.folder, row.variant.name), *text = NULL;
+    JsonNode *root = g_file_get_contents(path, &text, NULL, NULL) ? json_from_string(text, NULL) : NULL;
+    JsonNode *found = root && JSON_NODE_HOLDS_OBJECT(root) ? json_object_get_member(json_node_get_object(root), "parameters") : NULL;
+    Params *p = batch_params(def, &row.variant, NULL);
+    if (p && found && JSON_NODE_HOLDS_OBJECT(found))
+        list_differing(json_node_get_object(found), p, names);
+    params_free(p);
+    if (root)
+        json_node_unref(root);
+    g_free(text);
+    g_free(path);
+    row_clear(&row);
+    return g_string_free(names, FALSE);
 }
 
 void batch_hidden(const BatchDef *def, BatchNames *out)

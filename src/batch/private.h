@@ -8,15 +8,19 @@
 
 enum { FOLDER_LEAVES = 1000, MOST_IN_ONE = 10000 }; /* variants of a folder; of a sweep whose leaves are all in one */
 
-/* The files in a folder. `sha256` is that of what sha256sum says of them, in order of their names (bytes):
+/* The files in a folder but for row and hidden ones. `sha256` is that of what sha256sum says of them, in order of their names (bytes):
  *     ls | grep -vx sweep.json | LC_ALL=C sort | xargs sha256sum | sha256sum */
 typedef struct {
     uint32_t files;
     uint64_t bytes;
     char sha256[65];
 } FolderSum;
+gboolean batch_measure_folder(const char *folder, FolderSum *out); /* files and bytes alone */
 gboolean batch_sum_folder(const char *folder, FolderSum *out, GError **error);
-uint64_t batch_folder_bytes(const char *folder);
+uint64_t batch_folder_bytes(const char *folder); /* with the row */
+
+/* Has the disk take all files of a folder, so that after a power failure none with this name is emptied. */
+gboolean batch_sync_folder(const char *folder, GError **error);
 
 /* An error of errno, "PATH: WHAT: …". Returns FALSE. */
 gboolean batch_fail(GError **error, const char *what, const char *path);
@@ -48,6 +52,9 @@ const char *const *row_counts(void);
 
 /* The key in a row that was read, or NULL. Free it. */
 char *row_key(const Row *row);
+
+/* Whether the files beside the row of a grown leaf are as many and as long as it says; with `contents`, and the same. */
+bool row_is_whole(const char *out, const Row *row, bool contents);
 
 /* What a variant depends on: version, every parameter, the contents of the files they name, the seed, and what is written. Two runs with one key give one
  * result. Any number of threads. Free it. */

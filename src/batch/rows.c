@@ -235,6 +235,19 @@ void row_read(const Sweep *s, const char *out, uint64_t index, Row *row)
     g_free(failed);
 }
 
+bool row_is_whole(const char *out, const Row *row, bool contents)
+{
+    FolderSum sum;
+    char *folder = g_build_filename(out, row->folder, NULL), *wanted = member(row->json, "sha256");
+    bool whole = contents ? batch_sum_folder(folder, &sum, NULL) && wanted && strcmp(wanted, sum.sha256) == 0 : batch_measure_folder(folder, &sum);
+    char *files = g_strdup_printf("\"files\": %u, \"bytes\": %" G_GUINT64_FORMAT ", ", sum.files, sum.bytes);
+    whole = whole && strstr(row->json, files);
+    g_free(files);
+    g_free(folder);
+    g_free(wanted);
+    return whole;
+}
+
 char *row_key(const Row *row) { return member(row->json, "key"); }
 
 void row_clear(Row *row)

@@ -16,7 +16,7 @@ enum { MOST_THREADS = 1024, MOST_SHARDS = 1000000, MOST_CELL = 2048, MOST_TOLD =
 
 typedef struct {
     CommonArgs common;
-    gboolean quiet, dry_run, collect, dataset;
+    gboolean quiet, dry_run, collect, dataset, replace;
     char *dir, *threads, *size, *maps, *write, *shard, *cell, *picture, *validation;
     char **set;
 } SweepArgs;
@@ -34,6 +34,7 @@ static const GOptionEntry options[] = {
     {"validation", 0, 0, G_OPTION_ARG_FILENAME, FIELD(validation), "Part of the data set that is for validation, chosen by seed (default: 0.2)", "PART"},
     {"shard", 0, 0, G_OPTION_ARG_FILENAME, FIELD(shard), "Grow the I-th of N parts only, I from 1; --collect ends the work", "I/N"},
     {"collect", 0, 0, G_OPTION_ARG_NONE, FIELD(collect), "Grow nothing: write manifest, sheet and page of what is there", NULL},
+    {"replace", 0, 0, G_OPTION_ARG_NONE, FIELD(replace), "Grow leaves anew that are in DIR and of other parameters or options; without it such a folder is refused", NULL},
     {"dry-run", 0, 0, G_OPTION_ARG_NONE, FIELD(dry_run), "List the variants (on a terminal, the first), and estimate size and time by growing one of them for a trial", NULL},
     {"cell", 0, 0, G_OPTION_ARG_FILENAME, FIELD(cell), "Pixels of a leaf on the contact sheet (default: 320; 0: no pictures, sheet and page)", "PX"},
     {"picture", 0, 0, G_OPTION_ARG_FILENAME, FIELD(picture), "What sheet and page show: veins, black on white (the default), or specimen, the leaf in its colours (the default of a data set)",
@@ -343,6 +344,42 @@ static void tell_others(const Sweeping *w)
     tell_names(w, &names, "hidden folder is of another run, at work or killed", "hidden folders are of other runs, at work or killed", "; remove what is of no run at work");
 }
 
+static void add_word(GString *s, const char *word)
+{
+    static const char plain[] = G_CSET_A_2_Z G_CSET_a_2_z G_CSET_DIGITS "_-+=./,:@%";
+    char *quoted = *word && !word[strspn(word, plain)] ? g_strdup(word) : g_shell_quote(word);
+    g_string_append_printf(s, " %s", quoted);
+    g_free(quoted);
+}
+
+/* The command that ends the work of the shards: this one's options, but for those that leaves don't depend on. */
+static char *collect_command(const Sweeping *w)
+{
+    GString *s = g_string_new("venation sweep");
+    add_word(s, w->args->common.operands[0]);
+    add_word(s, "-o");
+    add_word(s, w->dir);
+    for (const GOptionEntry *o = options; o->long_name; o++) {
+        static const char *const left[] = {"output", "shard", "collect", "replace", "threads", "quiet", NULL};
+        const void *at = (const char *)w->args + (gsize)o->arg_data;
+        char *name = g_strconcat("--", o->long_name, NULL), *one[] = {NULL, NULL}, **values = one;
+        if (o->arg == G_OPTION_ARG_FILENAME)
+            one[0] = *(char *const *)at;
+        else if (o->arg == G_OPTION_ARG_FILENAME_ARRAY)
+            values = *(char **const *)at;
+        gboolean wanted = !g_strv_contains(left, o->long_name);
+        if (wanted && o->arg == G_OPTION_ARG_NONE && *(const gboolean *)at)
+            add_word(s, name);
+        for (; wanted && values && *values; values++) {
+            add_word(s, name);
+            add_word(s, *values);
+        }
+        g_free(name);
+    }
+    g_string_append(s, " --collect");
+    return g_string_free(s, FALSE);
+}
+
 static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed, uint64_t missing)
 {
     GString *s = g_string_new(NULL);
@@ -357,10 +394,12 @@ static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed,
         g_string_append_printf(s, "%s%" G_GUINT64_FORMAT " missing", s->len ? ", " : "", missing);
     if (!w->args->quiet) {
         fprintf(stderr, "%s: %s%s%.1f s\n", w->name, s->str, s->len ? ", " : "", (double)(g_get_monotonic_time() - w->begun) / G_USEC_PER_SEC);
+        char *command = collect_command(w);
         if (w->args->shard)
-            fprintf(stderr, "%s: part %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT "; after the last one: venation sweep --collect\n", dir, w->shard, w->shards);
+            fprintf(stderr, "%s: part %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT "; after the last one: %s\n", dir, w->shard, w->shards, command);
         else
             fprintf(stderr, "%s: %s%smanifest.csv, manifest.jsonl, leaves\n", dir, w->args->dataset ? "dataset, " : "", w->cell ? "sheet.png, index.html, " : "");
+        g_free(command);
         if (!w->args->shard)
             tell_others(w);
     }
@@ -368,19 +407,41 @@ static void summarise(const Sweeping *w, const BatchState *end, uint64_t failed,
     g_string_free(s, TRUE);
 }
 
-/* Leaves that were grown with other options than these are none that they could be collected by. */
+/* Leaves that these parameters and options would not give. */
+static int tell_stale(const Sweeping *w, const BatchCount *count, const char *advice)
+{
+    char *names = batch_differing(&w->def, count->first_stale);
+    int status = cli_fail(EXIT_BAD_INPUT, "%s: %" G_GUINT64_FORMAT " of the leaves there are of other parameters or options (%s): %s", w->dir, count->stale,
+                          *names ? names : "a file they name, --write, --cell, --picture, --dataset, or the version", advice);
+    g_free(names);
+    return status;
+}
+
+static int tell_damaged(const Sweeping *w, const BatchCount *count)
+{
+    Row row;
+    row_read(w->sweep, w->dir, count->first_damaged, &row);
+    int status = cli_fail(EXIT_BAD_INPUT, "%s: files of %" G_GUINT64_FORMAT " %s are not what they were when they were written, as those of %s: run the sweep again without --collect, "
+                          "which grows what is damaged anew", w->dir, count->damaged, count->damaged == 1 ? "leaf" : "leaves", row.folder);
+    row_clear(&row);
+    return status;
+}
+
+/* Nothing is collected by other options than it was grown with, and no finished leaf is lost by them. */
 static int check_settings(Sweeping *w)
 {
     BatchCount count;
     GError *error = NULL;
-    w->phase = "  collecting: checking";
-    if (!batch_count(&w->def, &count, &error))
-        return tell_end(w, error, "it was collecting");
+    gboolean collects = w->args->collect;
+    if (!collects && w->args->replace)
+        return 0;
+    w->phase = collects ? "  collecting: checking" : "  checking what is there";
+    if (!batch_count(&w->def, !collects ? BATCH_ROWS : w->args->dataset ? BATCH_CONTENTS : BATCH_SIZES, &count, &error))
+        return tell_end(w, error, collects ? "it was collecting" : "it was checking what is there");
     progress_clear(w->progress);
-    return count.stale == 0 ? 0
-                            : cli_fail(EXIT_BAD_INPUT,
-                                       "%s: %" G_GUINT64_FORMAT " of the leaves there are of other parameters or options: collect with those they were grown with, or grow them anew",
-                                       w->dir, count.stale);
+    if (count.stale)
+        return tell_stale(w, &count, collects ? "collect with those they were grown with, or grow them anew (--replace)" : "choose another -o, or --replace to grow them anew");
+    return collects && count.damaged ? tell_damaged(w, &count) : 0;
 }
 
 static int carry_out(Sweeping *w)
@@ -396,7 +457,9 @@ static int carry_out(Sweeping *w)
     w->def.staging = output_staging(w->output);
     w->def.watch = (Watch){on_collect, w};
     w->progress = w->args->quiet ? NULL : progress_new(w->name);
-    int status = w->args->collect ? check_settings(w) : grow_all(w, &end);
+    int status = check_settings(w);
+    if (status == 0 && !w->args->collect)
+        status = grow_all(w, &end);
     if (status == 0 && !w->args->shard)
         status = collect(w, &count);
     progress_clear(w->progress);
@@ -446,7 +509,8 @@ const Verb sweep_verb = {
     "a page to browse them with.\n\n"
     "Stopped or killed at any time, the same command does what is missing. --shard I/N does one of N parts, on one machine or many that share the folder; "
     "--collect, with the same options, then writes manifest, sheet and page. Several runs on one folder at once do no harm: each leaves to the others what they have in hand. "
-    "Leaves that are of no variant of the sweep file any more are kept, and told of.\n\n"
+    "Leaves that are of no variant of the sweep file any more are kept, and told of. A folder with leaves of other parameters or options is refused, with status 3, "
+    "unless --replace is given. A leaf whose files are not as many or as long as they were (with --dataset: not the same) is grown anew; --collect refuses it.\n\n"
     "'sha256' in the manifest is of a leaf's whole folder but sweep.json: ls | grep -vx sweep.json | LC_ALL=C sort | xargs sha256sum | sha256sum gives it there.\n\n"
     "The exit status is 0 when all leaves are there, 3 when some can't be grown or are missing (the others are there), 2 or 3 when the command or the file is wrong, 1 when the machine failed, "
     "as by a full disk, and 128 plus the signal when it was stopped.\n\n"

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "batch/rows.h"
 #include "cli/cli.h"
 #include "cli/interrupt.h"
 #include "cli/output.h"
@@ -96,6 +97,18 @@ static void tell(const BatchDef *def, uint64_t chosen, double seconds, uint64_t 
     g_free(all);
 }
 
+/* As the run would tell it. */
+static int tell_failure(const BatchDef *def, const char *out, uint64_t index)
+{
+    uint64_t mine = variants(def);
+    Row row;
+    row_read(def->sweep, out, index, &row);
+    fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, failed\n", mine, cli_s(mine), index);
+    int status = cli_fail(EXIT_BAD_INPUT, "%s: %s", row.variant.name, row.error ? row.error : "");
+    row_clear(&row);
+    return status;
+}
+
 /* Grows the variant in the middle. */
 static int try_one(const BatchDef *def, Trial *t)
 {
@@ -126,7 +139,7 @@ static int try_one(const BatchDef *def, Trial *t)
     else if (good && end.grown)
         tell(def, middle, seconds, batch_bytes(&one, middle));
     else if (good)
-        fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, failed\n", mine, cli_s(mine), middle);
+        status = tell_failure(def, out, middle);
     else if (g_error_matches(error, G_IO_ERROR, G_IO_ERROR_CANCELLED))
         fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, takes longer than %d s, so size and time are not known\n", mine,
                 cli_s(mine), middle, TRIAL_SECONDS);
@@ -160,7 +173,7 @@ int sweep_trial(const BatchDef *def, gboolean quiet)
 {
     gboolean shown = isatty(STDOUT_FILENO);
     int status = shown || quiet ? 0 : estimate(def);
-    if (status == 0 && !list(def, shown ? MOST_SHOWN : G_MAXUINT64))
+    if ((status == 0 || status == EXIT_BAD_INPUT) && !list(def, shown ? MOST_SHOWN : G_MAXUINT64))
         status = EXIT_FAILED;
     return status == 0 && shown && !quiet ? estimate(def) : status;
 }

@@ -144,16 +144,14 @@ void ring_within(const Vec2 *v, uint32_t n, Box2 box, Rings *out, Rings *spare)
 
 void union_init(Union *u, const Circle *circle)
 {
-    *u = (Union){.circle = circle};
+    *u = (Union){.circle = circle, .rest = &u->scratch[0], .next = &u->scratch[1], .ping = &u->scratch[2], .pong = &u->scratch[3]};
 }
 
 void union_clear(Union *u)
 {
     rings_clear(&u->part);
-    rings_clear(&u->rest);
-    rings_clear(&u->next);
-    rings_clear(&u->ping);
-    rings_clear(&u->pong);
+    for (int i = 0; i < 4; i++)
+        rings_clear(&u->scratch[i]);
     rings_clear(&u->mask);
     g_free(u->rank);
     g_free(u->size);
@@ -172,29 +170,29 @@ static bool cut(Union *u, Vec2 normal, double bound)
     if (MAX(normal.x, 0.0) + MAX(normal.y, 0.0) < bound - nearby)
         return true;
     if (MIN(normal.x, 0.0) + MIN(normal.y, 0.0) > bound + nearby) {
-        rings_reset(&u->ping);
+        rings_reset(u->ping);
         return false;
     }
     double beyond[FEW];
-    uint32_t n = u->ping.n_v, outside = 0;
+    uint32_t n = u->ping->n_v, outside = 0;
     for (uint32_t i = 0; i < n; i++) {
-        double d = vec_dot(u->ping.v[i], normal) - bound;
+        double d = vec_dot(u->ping->v[i], normal) - bound;
         outside += d > 0.0;
         if (i < FEW)
             beyond[i] = d;
     }
     if (outside == 0)
         return true;
-    rings_reset(&u->pong);
+    rings_reset(u->pong);
     if (outside == n) {
-        rings_reset(&u->ping);
+        rings_reset(u->ping);
         return false;
     }
-    clip_known(u->ping.v, n, normal, bound, n <= FEW ? beyond : NULL, &u->pong);
-    Rings swap = u->ping;
+    clip_known(u->ping->v, n, normal, bound, n <= FEW ? beyond : NULL, u->pong);
+    Rings *swap = u->ping;
     u->ping = u->pong;
     u->pong = swap;
-    return u->ping.n > 0;
+    return u->ping->n > 0;
 }
 
 /* Sides, a power of two, of the regular polygon that stands for a disc: the area between it and the disc, along one pixel, stays below
@@ -263,8 +261,8 @@ static bool cut_stroke(Union *u, const Capsule *k, StrokeCut ends, Vec2 corner)
         }
     /* Beyond the chord through the tangent points the disc bounds the stroke. */
     bool at_a = k->length == 0.0, at_b = false;
-    for (uint32_t i = 0; i < u->ping.n_v && k->length > 0.0; i++) {
-        double along = vec_dot(vec_sub(u->ping.v[i], a), k->d);
+    for (uint32_t i = 0; i < u->ping->n_v && k->length > 0.0; i++) {
+        double along = vec_dot(vec_sub(u->ping->v[i], a), k->d);
         at_a = at_a || along < k->ra * k->s;
         at_b = at_b || along > k->length + k->rb * k->s;
     }
@@ -275,21 +273,21 @@ static const Vec2 pixel[4] = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
 
 void union_add(Union *u, const Capsule *k, StrokeCut ends, Vec2 corner)
 {
-    rings_reset(&u->ping);
-    rings_copy(&u->ping, pixel, 4);
+    rings_reset(u->ping);
+    rings_copy(u->ping, pixel, 4);
     if (cut_stroke(u, k, ends, corner))
-        rings_copy(&u->part, u->ping.v, u->ping.n_v);
+        rings_copy(&u->part, u->ping->v, u->ping->n_v);
 }
 
 void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec2 corner)
 {
     Capsule disc = capsule_new(centre, radius, centre, radius);
     Vec2 c = vec_sub(centre, corner);
-    rings_reset(&u->ping);
-    rings_copy(&u->ping, pixel, 4);
+    rings_reset(u->ping);
+    rings_copy(u->ping, pixel, 4);
     if (cut(u, d1, vec_dot(c, d1)) && cut(u, vec2(-d0.x, -d0.y), -vec_dot(c, d0)) &&
         cut_stroke(u, &disc, CUT_NONE, corner))
-        rings_copy(&u->part, u->ping.v, u->ping.n_v);
+        rings_copy(&u->part, u->ping->v, u->ping->n_v);
 }
 
 /* ---- union ---- */
@@ -315,19 +313,19 @@ static void subtract(Union *u, const Vec2 *v, uint32_t n, const Vec2 *knife, uin
         rings_copy(out, v, n);
         return;
     }
-    rings_reset(&u->ping);
-    rings_copy(&u->ping, v, n);
-    for (uint32_t i = 0; i < m && u->ping.n > 0; i++) {
+    rings_reset(u->ping);
+    rings_copy(u->ping, v, n);
+    for (uint32_t i = 0; i < m && u->ping->n > 0; i++) {
         Vec2 o = knife[i], e = vec_sub(knife[i + 1 < m ? i + 1 : 0], o);
         Vec2 outer = vec2(e.y, -e.x);
         double bound = vec_dot(o, outer);
         bool cuts = false;
-        for (uint32_t j = 0; j < u->ping.n_v && !cuts; j++)
-            cuts = vec_dot(u->ping.v[j], outer) > bound;
+        for (uint32_t j = 0; j < u->ping->n_v && !cuts; j++)
+            cuts = vec_dot(u->ping->v[j], outer) > bound;
         if (!cuts)
             continue;
         uint32_t from = out->n_v;
-        clip(u->ping.v, u->ping.n_v, vec2(-outer.x, -outer.y), -bound, out);
+        clip(u->ping->v, u->ping->n_v, vec2(-outer.x, -outer.y), -bound, out);
         if (out->n_v > from && ring_area(out->v + from, out->n_v - from) < speck) {
             out->n--;
             out->n_v = from;
@@ -364,14 +362,14 @@ static double shared(Union *u, uint32_t i, uint32_t j)
     const Vec2 *knife = u->part.v + k;
     if (apart(u->part.v + s, u->part.end[i] - s, knife, m))
         return 0.0;
-    rings_reset(&u->ping);
-    rings_copy(&u->ping, u->part.v + s, u->part.end[i] - s);
+    rings_reset(u->ping);
+    rings_copy(u->ping, u->part.v + s, u->part.end[i] - s);
     for (uint32_t e = 0; e < m; e++) {
         Vec2 along = vec_sub(knife[e + 1 < m ? e + 1 : 0], knife[e]), outer = vec2(along.y, -along.x);
         if (!cut(u, outer, vec_dot(knife[e], outer)))
             return 0.0;
     }
-    return ring_area(u->ping.v, u->ping.n_v);
+    return ring_area(u->ping->v, u->ping->n_v);
 }
 
 /* What of part i no part ranked before it hides. */
@@ -380,23 +378,23 @@ static double unhidden(Union *u, uint32_t place)
     uint32_t i = u->rank[place], s = ring_start(&u->part, i);
     if (place == 1)
         return MAX(u->size[1] - shared(u, i, u->rank[0]), 0.0);
-    rings_reset(&u->rest);
-    rings_copy(&u->rest, u->part.v + s, u->part.end[i] - s);
-    for (uint32_t j = 0; j < place && u->rest.n > 0; j++) {
+    rings_reset(u->rest);
+    rings_copy(u->rest, u->part.v + s, u->part.end[i] - s);
+    for (uint32_t j = 0; j < place && u->rest->n > 0; j++) {
         uint32_t knife = u->rank[j], k = ring_start(&u->part, knife);
-        rings_reset(&u->next);
-        for (uint32_t f = 0; f < u->rest.n; f++) {
-            uint32_t t = ring_start(&u->rest, f);
-            subtract(u, u->rest.v + t, u->rest.end[f] - t, u->part.v + k, u->part.end[knife] - k, &u->next);
+        rings_reset(u->next);
+        for (uint32_t f = 0; f < u->rest->n; f++) {
+            uint32_t t = ring_start(u->rest, f);
+            subtract(u, u->rest->v + t, u->rest->end[f] - t, u->part.v + k, u->part.end[knife] - k, u->next);
         }
-        Rings swap = u->rest;
+        Rings *swap = u->rest;
         u->rest = u->next;
         u->next = swap;
     }
     double sum = 0.0;
-    for (uint32_t f = 0; f < u->rest.n; f++) {
-        uint32_t t = ring_start(&u->rest, f);
-        sum += ring_area(u->rest.v + t, u->rest.end[f] - t);
+    for (uint32_t f = 0; f < u->rest->n; f++) {
+        uint32_t t = ring_start(u->rest, f);
+        sum += ring_area(u->rest->v + t, u->rest->end[f] - t);
     }
     return sum;
 }
@@ -426,11 +424,11 @@ static double square_area(Union *u, uint32_t first, uint32_t last, Vec2 corner, 
         bool full = false;
         for (uint32_t i = first; i < last && !full; i++) {
             uint32_t s = ring_start(&u->part, i), from = u->part.n_v;
-            rings_reset(&u->ping);
-            rings_copy(&u->ping, u->part.v + s, u->part.end[i] - s);
+            rings_reset(u->ping);
+            rings_copy(u->ping, u->part.v + s, u->part.end[i] - s);
             if (cut(u, vec2(1.0, 0.0), c.x + h) && cut(u, vec2(-1.0, 0.0), -c.x) && cut(u, vec2(0.0, 1.0), c.y + h) &&
                 cut(u, vec2(0.0, -1.0), -c.y))
-                rings_copy(&u->part, u->ping.v, u->ping.n_v);
+                rings_copy(&u->part, u->ping->v, u->ping->n_v);
             full = ring_area(u->part.v + from, u->part.n_v - from) >= h * h * (1.0 - 1e-12);
         }
         sum += full ? h * h : square_area(u, n, u->part.n, c, h, depth + 1);
@@ -451,15 +449,15 @@ static double triangle_area(Union *u, const Vec2 *t)
     uint32_t n = u->part.n, n_v = u->part.n_v;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t s = ring_start(&u->part, i);
-        rings_reset(&u->ping);
-        rings_copy(&u->ping, u->part.v + s, u->part.end[i] - s);
-        bool left = u->ping.n > 0;
+        rings_reset(u->ping);
+        rings_copy(u->ping, u->part.v + s, u->part.end[i] - s);
+        bool left = u->ping->n > 0;
         for (int k = 0; k < 3 && left; k++) {
             Vec2 e = vec_sub(t[(k + 1) % 3], t[k]), outer = vec2(e.y, -e.x);
             left = cut(u, outer, vec_dot(t[k], outer));
         }
         if (left)
-            rings_copy(&u->part, u->ping.v, u->ping.n_v);
+            rings_copy(&u->part, u->ping->v, u->ping->n_v);
     }
     double area = square_area(u, n, u->part.n, vec2(0.0, 0.0), 1.0, 0);
     u->part.n = n;
@@ -470,7 +468,7 @@ static double triangle_area(Union *u, const Vec2 *t)
 /* The polygon is a sum of triangles, those that turn right taken away. */
 double union_area_within(Union *u, const Vec2 *v, uint32_t n, Vec2 corner)
 {
-    ring_within(v, n, (Box2){corner.x, corner.y, corner.x + 1.0, corner.y + 1.0}, &u->mask, &u->ping);
+    ring_within(v, n, (Box2){corner.x, corner.y, corner.x + 1.0, corner.y + 1.0}, &u->mask, u->ping);
     double sum = 0.0;
     for (uint32_t i = 1; i + 1 < u->mask.n_v; i++) {
         Vec2 o = vec_sub(u->mask.v[0], corner), a = vec_sub(u->mask.v[i], corner), b = vec_sub(u->mask.v[i + 1], corner);

@@ -25,9 +25,10 @@ typedef struct {
 typedef struct {
     const Circle *circle;
     Rings part;       /* the strokes within the pixel */
-    Rings rest, next; /* what is left of one of them */
-    Rings ping, pong; /* polygons being cut */
     Rings mask;       /* the polygon that they are seen through */
+    Rings scratch[4]; /* of the following, which take turns */
+    Rings *rest, *next; /* what is left of one of them */
+    Rings *ping, *pong; /* polygons being cut */
     uint32_t *rank;   /* parts by size */
     double *size;
     uint32_t cap;

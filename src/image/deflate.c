@@ -2,8 +2,8 @@
 
 #include <zlib.h>
 
-/* Measured on full sets of maps (tests/bench/bench_paint.c): higher levels take longer for files that are hardly smaller. */
-enum { LEVEL = 1 };
+/* Measured on full sets of maps (tests/bench/bench_paint.c --compression): higher levels take longer for files that are hardly smaller. */
+enum { LEVEL = 1, WINDOW_BITS = 15, MEMORY = 8 };
 
 struct Deflate {
     z_stream stream;
@@ -14,12 +14,12 @@ static voidpf get_memory(voidpf user, uInt n, uInt size) { return g_malloc0_n(n,
 
 static void free_memory(voidpf user, voidpf memory) { g_free(memory); }
 
-Deflate *deflate_new(void)
+Deflate *deflate_new(DeflateMatch match)
 {
     Deflate *d = g_new0(Deflate, 1);
     d->stream.zalloc = get_memory; /* runs out of memory as all else does */
     d->stream.zfree = free_memory;
-    if (deflateInit(&d->stream, LEVEL) != Z_OK)
+    if (deflateInit2(&d->stream, LEVEL, Z_DEFLATED, WINDOW_BITS, MEMORY, match == DEFLATE_RUNS ? Z_RLE : Z_DEFAULT_STRATEGY) != Z_OK)
         g_error("zlib refuses to compress at level %d", LEVEL); /* it fails on wrong settings alone */
     return d;
 }

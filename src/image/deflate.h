@@ -8,7 +8,11 @@
 
 typedef struct Deflate Deflate;
 
-Deflate *deflate_new(void);
+/* What is looked for: runs of a byte, which is quick and finds what there is where numbers change little from pixel to pixel, once neighbours are taken
+ * away from them; or any string seen before, as numbers of veins, which take several bytes, come back row after row. */
+typedef enum { DEFLATE_RUNS, DEFLATE_STRINGS } DeflateMatch;
+
+Deflate *deflate_new(DeflateMatch match);
 void deflate_free(Deflate *d);
 
 /* n bytes as one stream; its length, or 0 when it is longer than `room`. */

@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <math.h>
 #include <openexr.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,6 +11,8 @@
 
 enum { CHUNK_ROWS = IMAGE_BAND, BATCH = 64 }; /* rows of a ZIP chunk; chunks compressed at a time */
 enum { GRAIN = 4 };                           /* chunks that a thread compresses in a row */
+
+#define HALF_MOST 65504.0 /* the largest number of a half */
 
 /* A chunk on its way into the file. */
 typedef struct {
@@ -213,12 +216,18 @@ static void predict(const uint16_t *restrict in, gsize n, uint8_t *restrict out)
         high[i] = (uint8_t)((in[i] >> 8) - (in[i - 1] >> 8) + 128);
 }
 
+/* Numbers of veins, or of areoles, come back row after row. Measured on full sets of maps (tests/bench/bench_paint.c). */
+static DeflateMatch choose_match(const Plane *p)
+{
+    return p->kind == PLANE_LABEL && p->high > 255.0 ? DEFLATE_STRINGS : DEFLATE_RUNS;
+}
+
 /* Compresses the chunks first … last-1 of the batch; they stay there until they are written in order. */
 static void compress_range(uint32_t first, uint32_t last, void *user)
 {
     Writer *w = user;
     const Plane *p = w->band;
-    Deflate *d = deflate_new();
+    Deflate *d = deflate_new(choose_match(&w->like));
     uint8_t *predicted = g_malloc((gsize)p->width * p->channels * CHUNK_ROWS * (w->half ? 2 : 4));
     uint16_t *row = g_new(uint16_t, (gsize)p->width * p->channels);
     for (uint32_t i = first; i < last; i++) {
@@ -319,7 +328,8 @@ ImageFile *image_exr_begin(const char *path, const Plane *like, uint32_t height,
     w->like.height = height;
     w->like.px = NULL;
     w->pool = pool;
-    w->half = half && like->kind != PLANE_LABEL; /* half holds whole numbers up to 2048 only */
+    gboolean fits = fabs(like->low) <= HALF_MOST && fabs(like->high) <= HALF_MOST;
+    w->half = half && fits && like->kind != PLANE_LABEL; /* half holds whole numbers up to 2048 only */
     if (!staged_open(&w->file, path, error)) {
         g_free(w);
         return NULL;

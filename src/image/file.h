@@ -14,7 +14,8 @@ typedef struct ImageFile ImageFile;
  * PNG of 8 or 16 bits a channel: colour planes are sRGB-encoded (and carry an sRGB chunk), data planes map low…high to black…white
  * (and carry low, high and unit as text), label planes are written as the whole numbers they are (16 bit when they may be above 255
  * even if 8 is asked for).
- * EXR of half or float, one part, ZIP compression; channels named Y or R,G,B(,A). `pool`, which may be NULL, compresses. */
+ * EXR of float or, where the range and kind allow it, half; one part, ZIP compression; channels named Y or R,G,B(,A). `pool`, which may be NULL,
+ * compresses. */
 ImageFile *image_png_begin(const char *path, const Plane *like, uint32_t height, int depth, const Metadata *meta, GError **error);
 ImageFile *image_exr_begin(const char *path, const Plane *like, uint32_t height, gboolean half, const Metadata *meta, Pool *pool,
                            GError **error);

@@ -1,5 +1,5 @@
-/* PNG files: libpng writes the chunks; what goes into the IDAT ones is filtered here and compressed with ISA-L, as libpng knows no other
- * compressor than zlib, which takes five times as long. */
+/* PNG files: libpng writes the chunks; what goes into the IDAT ones is filtered here, by loops that vector instructions take in, and
+ * compressed in steps of a band. */
 #include <errno.h>
 #include <png.h>
 #include <stdlib.h>
@@ -12,7 +12,8 @@
 
 enum { LONG_TEXT = 1024 };      /* bytes from which a text is compressed */
 enum { IDAT_BYTES = 1 << 16 };  /* of an IDAT chunk */
-enum { AS_IS = 0, AS_UP = 2 };  /* filters of a row (PNG specification, section 9): none; less the row above */
+enum { PAETH = 4 };             /* the filter of all rows (PNG specification, section 9) */
+enum { MOST_STEP = 8 };         /* bytes of a pixel */
 
 /* Everything libpng's error jump must leave behind whole. */
 typedef struct {
@@ -24,10 +25,9 @@ typedef struct {
     Encoder encoder;
     GPtrArray *strings; /* keys and values of the text chunks */
     GArray *texts;      /* png_text */
-    uint32_t row_bytes;
-    uint8_t *row, *above; /* without filter */
+    uint32_t row_bytes, step; /* bytes of a row and of a pixel */
+    uint8_t *row, *above; /* without filter; MOST_STEP zeros lie before them */
     uint8_t *filtered;    /* IMAGE_BAND rows, each behind its filter's number */
-    uint8_t filter;
     Deflate *deflate;
     uint8_t *idat; /* a chunk that is being filled */
     uint32_t n_idat;
@@ -176,23 +176,26 @@ static void put_bytes(Writer *w, const uint8_t *bytes, uint32_t n, gboolean last
     }
 }
 
-/* Measured on full sets of maps of 2048 pixels, with ISA-L: what differs from the row above takes as little room as what Paeth's filter leaves,
- * and vector instructions find it at once; labels repeat in ways that filters hide (bench_paint.c, --compression). */
-static uint8_t choose_filter(const Plane *p)
+/* Takes from each byte that of the pixel on the left, above, or above on the left that is nearest to left + above - corner. Of all filters this one leaves
+ * most to runs, also of labels (tests/bench/bench_paint.c, --compression). */
+static void filter_paeth(const uint8_t *row, const uint8_t *above, uint32_t n, uint32_t step, uint8_t *restrict out)
 {
-    return p->kind == PLANE_LABEL ? AS_IS : AS_UP;
+    const uint8_t *left = row - step, *corner = above - step;
+    for (uint32_t i = 0; i < n; i++) {
+        int16_t a = left[i], b = above[i], c = corner[i], da = (int16_t)(b - c), db = (int16_t)(a - c), dc = (int16_t)(da + db);
+        da = (int16_t)(da < 0 ? -da : da);
+        db = (int16_t)(db < 0 ? -db : db);
+        dc = (int16_t)(dc < 0 ? -dc : dc);
+        int16_t other = db <= dc ? b : c, least = db <= dc ? db : dc;
+        out[i] = (uint8_t)(row[i] - (da <= least ? a : other));
+    }
 }
 
-static void filter_row(Writer *w, uint8_t *restrict out)
+static void filter_row(Writer *w, uint8_t *out)
 {
-    uint8_t *restrict row = w->row, *restrict above = w->above;
-    uint32_t n = w->row_bytes;
-    *out++ = w->filter;
-    if (w->filter == AS_IS)
-        memcpy(out, row, n);
-    else
-        for (uint32_t i = 0; i < n; i++)
-            out[i] = (uint8_t)(row[i] - above[i]);
+    uint8_t *row = w->row, *above = w->above;
+    *out++ = PAETH;
+    filter_paeth(row, above, w->row_bytes, w->step, out);
     w->row = above;
     w->above = row;
 }
@@ -240,13 +243,13 @@ static gboolean begin(Writer *w, const Plane *like, uint32_t height, int depth, 
     w->strings = g_ptr_array_new_with_free_func(g_free);
     w->texts = g_array_new(FALSE, TRUE, sizeof(png_text));
     collect_texts(w, like, meta);
-    w->row_bytes = like->width * w->encoder.channels * (uint32_t)(w->encoder.depth / 8);
-    w->row = g_malloc(w->row_bytes);
-    w->above = g_malloc0(w->row_bytes);
+    w->step = w->encoder.channels * (uint32_t)(w->encoder.depth / 8);
+    w->row_bytes = like->width * w->step;
+    w->row = (uint8_t *)g_malloc0(MOST_STEP + (gsize)w->row_bytes) + MOST_STEP;
+    w->above = (uint8_t *)g_malloc0(MOST_STEP + (gsize)w->row_bytes) + MOST_STEP;
     w->filtered = g_malloc(IMAGE_BAND * ((gsize)w->row_bytes + 1));
-    w->filter = choose_filter(like);
     w->idat = g_malloc(IDAT_BYTES);
-    w->deflate = deflate_new();
+    w->deflate = deflate_new(DEFLATE_RUNS);
     deflate_begin(w->deflate);
     w->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, w, on_error, on_warning, w, on_malloc, on_free);
     if (w->png != NULL)
@@ -260,8 +263,8 @@ static void writer_free(Writer *w)
     encoder_clear(&w->encoder);
     g_array_free(w->texts, TRUE);
     g_ptr_array_free(w->strings, TRUE);
-    g_free(w->row);
-    g_free(w->above);
+    g_free(w->row - MOST_STEP);
+    g_free(w->above - MOST_STEP);
     g_free(w->filtered);
     g_free(w->idat);
     deflate_free(w->deflate);

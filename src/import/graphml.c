@@ -88,9 +88,10 @@ static gboolean take_graph_value(Reader *r, FieldId field, const char *text, gsi
         return (r->draft.net->holes = field_holes(text, length, error)) != NULL;
     if (field == FIELD_BASE || field == FIELD_TIP)
         return field_point(field, text, length, field == FIELD_BASE ? &r->draft.base : &r->draft.tip, error);
-    gboolean good = field_value(field, text, length, &steps, error);
+    if (!field_value(field, text, length, &steps, error))
+        return FALSE;
     r->draft.net->n_steps = (uint32_t)steps;
-    return good;
+    return TRUE;
 }
 
 /* One value of the open node, edge or graph. */

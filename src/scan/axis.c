@@ -5,6 +5,7 @@
 enum { GRID = 48, DIRECTIONS = 180 };
 
 #define OVERHANG 0.05 /* of the axis: a sinus deeper than that marks the base */
+#define PEAK 0.03 /* in symmetry, of the part of a peak from the top that its middle is taken of */
 #define LENGTH_BONUS 0.05 /* in symmetry, of an axis along the leaf's whole extent: an ellipse has two */
 
 void axis_init(Axis *a, const Polygon *outline)
@@ -35,7 +36,7 @@ double axis_symmetry(const Axis *a, Vec2 from, Vec2 to)
     return (double)same / a->n;
 }
 
-/* Distance from the middle, in units of u, to where the ray first meets the outline; 0 when it doesn't. */
+/* Distance from the middle along u, in its length, to where the ray first meets the outline; 0 when it doesn't. */
 static double first_crossing(const Axis *a, Vec2 u)
 {
     const Polygon *p = a->outline;
@@ -45,11 +46,17 @@ static double first_crossing(const Axis *a, Vec2 u)
         double s = vec_cross(u, v), t = vec_cross(u, w);
         if ((s < 0.0) == (t < 0.0))
             continue;
-        double at = vec_dot(u, vec_lerp(v, w, s / (s - t)));
+        double at = vec_dot(u, vec_lerp(v, w, s / (s - t))) / vec_norm2(u);
         if (at > 0.0 && (best == 0.0 || at < best))
             best = at;
     }
     return best;
+}
+
+Vec2 axis_opposite(const Axis *a, Vec2 from)
+{
+    Vec2 u = vec_sub(a->middle, from);
+    return vec_norm2(u) > 0.0 ? vec_add(a->middle, vec_scale(u, first_crossing(a, u))) : a->middle;
 }
 
 /* How far along u the outline reaches from the middle. */
@@ -61,22 +68,41 @@ static double reach(const Axis *a, Vec2 u)
     return most;
 }
 
+/* The k-th direction, -90° … 90°; of fractions in between, too. */
+static Vec2 direction(double k)
+{
+    double t = -1.0 + 2.0 * k / DIRECTIONS; /* tangent of half the angle */
+    return vec2((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));
+}
+
+/* Where the peak of scores around the best one has its middle: points are too few for more than the foot of it to be sure. */
+static double peak_middle(const double *score, int best)
+{
+    double least = score[best] - PEAK, sum = 0.0, all = 0.0;
+    for (int way = -1; way <= 1; way += 2)
+        for (int k = way > 0 ? 0 : 1; k < DIRECTIONS / 4; k++) {
+            double above = score[(best + way * k + DIRECTIONS) % DIRECTIONS] - least;
+            if (above <= 0.0)
+                break;
+            sum += above * way * k;
+            all += above;
+        }
+    return best + sum / all;
+}
+
 double axis_find(const Axis *a, Vec2 *base, Vec2 *tip)
 {
-    Vec2 best = vec2(0.0, 1.0), c = a->middle;
+    Vec2 c = a->middle;
     Box2 b = a->outline->box;
-    double most = -1.0, symmetry = 0.0, extent = vec_dist(vec2(b.x0, b.y0), vec2(b.x1, b.y1));
+    double score[DIRECTIONS], extent = vec_dist(vec2(b.x0, b.y0), vec2(b.x1, b.y1));
+    int most = 0;
     for (int k = 0; k < DIRECTIONS; k++) {
-        double t = -1.0 + 2.0 * k / DIRECTIONS; /* tangent of half the angle, -90° … 90° */
-        Vec2 u = vec2((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));
-        double s = axis_symmetry(a, c, vec_add(c, u));
-        double score = s + LENGTH_BONUS * (reach(a, u) + reach(a, vec_scale(u, -1.0))) / extent;
-        if (score > most) {
-            most = score;
-            symmetry = s;
-            best = u;
-        }
+        Vec2 u = direction(k);
+        score[k] = axis_symmetry(a, c, vec_add(c, u)) + LENGTH_BONUS * (reach(a, u) + reach(a, vec_scale(u, -1.0))) / extent;
+        most = score[k] > score[most] ? k : most;
     }
+    Vec2 best = direction(peak_middle(score, most));
+    double symmetry = axis_symmetry(a, c, vec_add(c, best));
     Vec2 back = vec_scale(best, -1.0);
     double ahead = first_crossing(a, best), behind = first_crossing(a, back);
     double past = (reach(a, best) - ahead) - (reach(a, back) - behind);

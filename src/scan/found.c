@@ -198,7 +198,7 @@ static Drawing *draw(const Search *s)
 Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error)
 {
     Search s = {.def = def, .orders = MAX(def->orders, 2)};
-    if (!found_def_check(def, error) || !found_leaf_init(&s.leaf, scan, outline, &base, error))
+    if (!found_def_check(def, error) || !found_leaf_init(&s.leaf, scan, outline, &base, FOUND_SIDE, error))
         return NULL;
     s.ridges = found_ridges_of(&s.leaf, def);
     s.base = to_working(&s, base);

@@ -6,7 +6,6 @@
 #include "scan/found_parts.h"
 #include "scan/mask.h"
 
-static const double longest_side = 1200.0; /* working pixels */
 static const double shortest_side = 800.0; /* the same, of small leaves, as far as pixels of half the size allow: the filter's least width is two */
 static const double least_step = 0.5;
 static const double padding = 0.06;        /* of that: what the filter reaches beyond the blade */
@@ -209,7 +208,7 @@ static void clip(const FoundLeaf *l, GreyImage *g)
         g->px[i] = CLAMP(g->px[i], -most, most);
 }
 
-bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const Vec2 *base, GError **error)
+bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const Vec2 *base, double longest, GError **error)
 {
     Box2 b = outline->box;
     double longer = MAX(b.x1 - b.x0, b.y1 - b.y0);
@@ -221,7 +220,7 @@ bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const 
                     b.x0, s->height - b.y1, b.x1, s->height - b.y0, s->width, s->height, FOUND_SHORTEST);
         return false;
     }
-    l->step = MAX(longer / longest_side, CLAMP(longer / shortest_side, least_step, 1.0));
+    l->step = MAX(longer / longest, CLAMP(longer / shortest_side, least_step, 1.0));
     l->length = longer / l->step;
     l->pad = (uint32_t)ceil(padding * l->length) + 8;
     l->width = (uint32_t)ceil((b.x1 - b.x0) / l->step) + 2 * l->pad;

@@ -18,8 +18,10 @@ typedef struct {
     GreyImage *plane[3]; /* illumination evened, 0 outside, veins of either polarity */
 } FoundLeaf;
 
-/* base: where veins run together, y-up pixels of the scan; NULL: not known. */
-bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const Vec2 *base, GError **error);
+enum { FOUND_SIDE = 1200 }; /* working pixels */
+
+/* base: where veins run together, y-up pixels of the scan; NULL: not known. longest: the longer side has no more working pixels. */
+bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const Vec2 *base, double longest, GError **error);
 void found_leaf_clear(FoundLeaf *l);
 
 /* One pass of the filter over an image at one width. */

@@ -120,7 +120,7 @@ bool found_def_check(const FoundDef *def, GError **error)
 FoundRidges *found_ridges(const Scan *s, const Polygon *outline, const FoundDef *def, GError **error)
 {
     FoundLeaf l;
-    if (!found_def_check(def, error) || !found_leaf_init(&l, s, outline, NULL, error))
+    if (!found_def_check(def, error) || !found_leaf_init(&l, s, outline, NULL, FOUND_SIDE, error))
         return NULL;
     FoundRidges *r = found_ridges_of(&l, def);
     found_leaf_clear(&l);

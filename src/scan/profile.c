@@ -3,6 +3,7 @@
 #include "geom/march.h"
 #include "geom/ring.h"
 #include "scan/axis.h"
+#include "scan/gather.h"
 #include "scan/mask.h"
 #include "scan/stalk.h"
 
@@ -12,6 +13,10 @@
  * line that is less symmetric by so much: it is bent over the blade. */
 #define ASIDE 0.25
 #define LESS_SYMMETRIC 0.04
+#define FAR_LESS_SYMMETRIC 0.1 /* the line to the farthest point, than that through the middle: the tip is not there */
+#define VEINS_SAY 0.02 /* gather_compare beyond which veins tell base from tip, rather than the outline … */
+#define VEINS_INSIST 0.12 /* … and beyond which they gainsay a short petiole, which may be the tip of a lobe, */
+#define SHORT 0.15        /* one shorter than this share of the axis */
 
 ProfileDef profile_def_default(void)
 {
@@ -145,18 +150,33 @@ static Vec2 farthest(const Polygon *p, Vec2 from)
     return best;
 }
 
-/* Base by petiole, if that lies about where a leaf can have it, else by symmetry. */
+/* Base by petiole, if that lies about where a leaf can have it, else the end of the line of symmetry that the veins say, or the outline where they
+ * don't show. */
 static void find_base(Capture *c, const Axis *axis)
 {
     Profile *o = c->out;
     Vec2 tip, stalk = upright(c, c->stalk.base);
     double best = axis_find(axis, &o->base, &tip), near = ASIDE * vec_dist(o->base, tip);
     o->base_from = BASE_AXIS;
-    if (!o->has_stalk || (vec_dist(stalk, o->base) > near && vec_dist(stalk, tip) > near &&
-                          axis_symmetry(axis, stalk, axis->middle) < best - LESS_SYMMETRIC))
+    bool shown = o->has_stalk && (vec_dist(stalk, o->base) <= near || vec_dist(stalk, tip) <= near ||
+                                  axis_symmetry(axis, stalk, axis->middle) >= best - LESS_SYMMETRIC);
+    if (shown && c->stalk.length < SHORT * vec_dist(o->base, tip))
+        shown = gather_compare(c->scan, axis->outline, stalk, axis_opposite(axis, stalk)) > -VEINS_INSIST;
+    if (!shown) {
+        if (gather_compare(c->scan, axis->outline, o->base, tip) < -VEINS_SAY)
+            o->base = tip;
         return;
+    }
     o->base = c->def->keep_stalk ? stalk : polygon_nearest(axis->outline, stalk, NULL);
     o->base_from = BASE_STALK;
+}
+
+/* Farthest from the base; but lobes beside a notch at the tip reach farther than it, and so do corners: then where symmetry says. */
+static Vec2 find_tip(const Axis *axis, Vec2 base)
+{
+    Vec2 far = farthest(axis->outline, base), opposite = axis_opposite(axis, base);
+    bool better = axis_symmetry(axis, base, far) < axis_symmetry(axis, base, opposite) - FAR_LESS_SYMMETRIC;
+    return better ? opposite : far;
 }
 
 /* `whole` is the outline that is wanted, `blade` the one without petiole. */
@@ -175,7 +195,7 @@ static bool find_ends(Capture *c, const Polygon *whole, const Polygon *blade, GE
     if (ok && c->def->has_tip)
         ok = take_given(whole, c->mask->height, "tip", c->def->tip, &o->tip, error);
     else
-        o->tip = farthest(blade, o->base);
+        o->tip = find_tip(&axis, o->base);
     if (ok && !(vec_dist2(o->base, o->tip) > 0.0)) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_VALUE, "base and tip are the same point, %g,%g from the upper left corner", o->base.x,
                     c->mask->height - o->base.y);

@@ -28,9 +28,13 @@ static void on_warning(png_structp png, png_const_charp message)
     (void)message;
 }
 
+/* libpng takes memory for as much as a chunk says it has, before it reads it, and only warns of its own limit; without the memory it leaves the chunk
+ * out. A row of an image within the limit gets what it needs. */
 static void *on_malloc(png_structp png, png_alloc_size_t n)
 {
     Reader *r = png_get_mem_ptr(png);
+    if (n > MIN(r->f->max_pixels, (uint64_t)G_MAXINT64 / 16) * 8 + (1 << 26))
+        return NULL;
     void *block = g_try_malloc(n);
     if (!block)
         r->code = ENOMEM;

@@ -5,18 +5,20 @@
 
 #include "geom/turn.h"
 #include "sim/edge_grid.h"
+#include "sim/edge_order.h"
 #include "sim/planar.h"
 
 enum { NONE = 0xFFFFFFFFu, BRIDGE = 0xFFFFFFFEu };
 
-/* Each edge twice, once each way: 2e from its lower node on, 2e + 1 back. The walk with the face to the left goes on from the head of a half-edge
+/* Each edge twice, once each way: 2e from its first node on, 2e + 1 back. The walk with the face to the left goes on from the head of a half-edge
  * with the next one clockwise from the way back. */
 typedef struct {
     const Vec2 *node;
     const uint32_t (*edge)[2];
     uint32_t n_nodes, n_edges;
+    const uint32_t *was; /* [nodes] a node's number in the planar graph */
     uint32_t *first;  /* [nodes + 1] into out and around: half-edges that leave a node */
-    uint32_t *out;    /* by head */
+    uint32_t *out;
     uint32_t *around; /* counter-clockwise */
     uint32_t *spot;   /* [half-edges] place in around */
     uint32_t *walk;   /* [half-edges] the walk it is of; BRIDGE: it is let go */
@@ -27,6 +29,9 @@ typedef struct {
 
 static uint32_t tail_of(const Faces *f, uint32_t h) { return f->edge[h / 2][h % 2]; }
 static uint32_t head_of(const Faces *f, uint32_t h) { return f->edge[h / 2][1 - h % 2]; }
+
+/* A half-edge's rank: by its tail, then its head, as the planar graph numbers them. */
+static uint64_t rank_of(const Faces *f, uint32_t h) { return (uint64_t)f->was[tail_of(f, h)] << 32 | f->was[head_of(f, h)]; }
 
 /* ---- tracing ---- */
 
@@ -39,10 +44,8 @@ static void list_out(Faces *f)
         first[tail_of(f, h) + 1]++;
     for (uint32_t v = 0; v < f->n_nodes; v++)
         first[v + 1] += first[v];
-    for (uint32_t e = 0; e < f->n_edges; e++) /* edges are in order: to lower heads first, then to higher ones */
-        f->out[first[f->edge[e][1]]++] = 2 * e + 1;
-    for (uint32_t e = 0; e < f->n_edges; e++)
-        f->out[first[f->edge[e][0]]++] = 2 * e;
+    for (uint32_t h = 0; h < 2 * f->n_edges; h++)
+        f->out[first[tail_of(f, h)]++] = h;
 }
 
 static int by_angle(gconstpointer x, gconstpointer y, gpointer user)
@@ -87,33 +90,76 @@ static uint32_t next_of(const Faces *f, uint32_t h)
     return f->around[i];
 }
 
+/* A walk by its first half-edge. */
+typedef struct {
+    uint64_t rank;
+    uint32_t start, number;
+    double area;
+} Walk;
+
+static int by_rank(gconstpointer x, gconstpointer y, gpointer user)
+{
+    const Walk *a = x, *b = y;
+    return (a->rank > b->rank) - (a->rank < b->rank);
+}
+
 /* The area by the way's turns about its first node. */
-static double trace(Faces *f, uint32_t start, uint32_t walk)
+static double area_of(const Faces *f, uint32_t start)
 {
     Vec2 o = f->node[tail_of(f, start)];
     uint32_t h = start;
     double sum = 0.0;
     do {
-        f->walk[h] = walk;
         sum += vec_cross(vec_sub(f->node[tail_of(f, h)], o), vec_sub(f->node[head_of(f, h)], o));
         h = next_of(f, h);
     } while (h != start);
     return 0.5 * sum;
 }
 
+static Walk trace(Faces *f, uint32_t from, uint32_t number)
+{
+    Walk w = {rank_of(f, from), from, number, 0.0};
+    uint32_t h = from;
+    do {
+        uint64_t rank = rank_of(f, h);
+        f->walk[h] = number;
+        if (rank < w.rank) {
+            w.rank = rank;
+            w.start = h;
+        }
+        h = next_of(f, h);
+    } while (h != from);
+    w.area = area_of(f, w.start);
+    return w;
+}
+
+/* Walks are traced in the order that nodes have here, and numbered in that of the planar graph. */
 static void trace_all(Faces *f)
 {
-    GArray *start = g_array_new(FALSE, FALSE, sizeof(uint32_t)), *area = g_array_new(FALSE, FALSE, sizeof(double));
-    f->n_walks = 0;
+    GArray *all = g_array_new(FALSE, FALSE, sizeof(Walk));
     for (uint32_t i = 0; i < 2 * f->n_edges; i++) {
         if (f->walk[f->out[i]] != NONE)
             continue;
-        double size = trace(f, f->out[i], f->n_walks++);
-        g_array_append_val(start, f->out[i]);
-        g_array_append_val(area, size);
+        Walk w = trace(f, f->out[i], all->len);
+        g_array_append_val(all, w);
     }
-    f->start = (uint32_t *)(void *)g_array_free(start, FALSE);
-    f->area = (double *)(void *)g_array_free(area, FALSE);
+    if (all->len > 0)
+        g_qsort_with_data(all->data, (gint)all->len, sizeof(Walk), by_rank, NULL);
+    f->n_walks = all->len;
+    f->start = g_new(uint32_t, (gsize)f->n_walks + 1);
+    f->area = g_new(double, (gsize)f->n_walks + 1);
+    uint32_t *number = g_new(uint32_t, (gsize)f->n_walks + 1);
+    for (uint32_t k = 0; k < f->n_walks; k++) {
+        const Walk *w = &g_array_index(all, Walk, k);
+        number[w->number] = k;
+        f->start[k] = w->start;
+        f->area[k] = w->area;
+    }
+    for (uint32_t h = 0; h < 2 * f->n_edges; h++)
+        if (f->walk[h] != BRIDGE)
+            f->walk[h] = number[f->walk[h]];
+    g_free(number);
+    g_array_free(all, TRUE);
 }
 
 /* Takes away the edges that have one face on both sides; whether there were such. */
@@ -128,9 +174,9 @@ static bool drop_bridges(Faces *f)
     return any;
 }
 
-static void faces_init(Faces *f, const Planar *g)
+static void faces_init(Faces *f, const EdgeOrder *o)
 {
-    *f = (Faces){.node = g->node, .n_nodes = g->n_nodes, .edge = (const uint32_t (*)[2])g->edge, .n_edges = g->n_edges};
+    *f = (Faces){.node = o->node, .n_nodes = o->n_nodes, .edge = (const uint32_t (*)[2])o->edge, .n_edges = o->n_edges, .was = o->was};
     list_out(f);
     turn_around(f);
     f->walk = g_malloc(2 * (gsize)f->n_edges * sizeof *f->walk + 1);
@@ -252,7 +298,7 @@ static void write_ring(const Faces *f, Areoles *a, uint32_t walk, uint32_t ring)
 {
     uint32_t h = f->start[walk], n = a->ring[ring];
     do {
-        a->node[n++] = tail_of(f, h);
+        a->node[n++] = f->was[tail_of(f, h)];
         h = next_of(f, h);
     } while (h != f->start[walk]);
     a->ring[ring + 1] = n;
@@ -340,14 +386,17 @@ Areoles *network_areoles(const Network *net)
         a->ring = g_new0(uint32_t, 1);
         return a;
     }
+    EdgeOrder o;
     Faces f;
-    faces_init(&f, p);
+    edge_order_init(&o, p->node, p->n_nodes, (const uint32_t (*)[2])p->edge, p->n_edges);
+    faces_init(&f, &o);
     collect(&f, a);
     faces_clear(&f);
-    if (net->holes)
-        drop_torn(a, p->node, net->holes);
+    edge_order_clear(&o);
     a->n_places = p->n_nodes;
     a->place = g_steal_pointer(&p->node);
+    if (net->holes)
+        drop_torn(a, a->place, net->holes);
     planar_free(p);
     return a;
 }

@@ -6,6 +6,7 @@
 #include "geom/segment.h"
 #include "geom/turn.h"
 #include "sim/edge_grid.h"
+#include "sim/edge_order.h"
 
 enum { ROUNDS = 16, TANGLE = 8 };
 
@@ -26,6 +27,7 @@ typedef struct {
     uint32_t n_edges;
     double near2;      /* squared distance at which a node lies on an edge */
     GArray *split, *crossing;
+    GArray *fresh;     /* [nodes] uint8_t: has it, or what runs into it, changed since it was looked at? */
     gsize most;        /* crossings */
     bool changed;
 } Cutter;
@@ -44,25 +46,27 @@ static void unite(Cutter *c, uint32_t a, uint32_t b)
     a = root(c->same, a);
     b = root(c->same, b);
     c->same[MAX(a, b)] = MIN(a, b);
+    ((uint8_t *)c->fresh->data)[MIN(a, b)] = TRUE;
     c->changed = true;
 }
 
 /* ---- what is near what ---- */
 
-/* Whether node v lies on edge i, which it is no end of; notes what to do about it. */
-static bool touch(Cutter *c, uint32_t i, uint32_t v)
+/* Whether node v lies on edge i, which it is no end of, both numbered as in `o`; notes what to do about it. */
+static bool touch(Cutter *c, const EdgeOrder *o, uint32_t i, uint32_t v)
 {
-    uint32_t a = c->edge[i][0], b = c->edge[i][1];
-    Vec2 pa = place(c, a), pb = place(c, b), p = place(c, v);
+    uint32_t a = o->edge[i][0], b = o->edge[i][1];
+    Vec2 pa = o->node[a], pb = o->node[b], p = o->node[v];
     if (segment_dist2(pa, pb, p) > c->near2)
         return false;
     if (vec_dist2(p, pa) <= c->near2) {
-        unite(c, v, a);
+        unite(c, o->was[v], o->was[a]);
     } else if (vec_dist2(p, pb) <= c->near2) {
-        unite(c, v, b);
+        unite(c, o->was[v], o->was[b]);
     } else {
-        Split s = {i, v, segment_nearest(pa, pb, p)};
+        Split s = {o->was_edge[i], o->was[v], segment_nearest(pa, pb, p)};
         g_array_append_val(c->split, s);
+        ((uint8_t *)c->fresh->data)[s.node] = TRUE;
         c->changed = true;
     }
     return true;
@@ -75,36 +79,90 @@ static bool apart(const Cutter *c, Vec2 a, Vec2 b, Vec2 p, Vec2 q)
            MAX(p.y, q.y) + near < MIN(a.y, b.y);
 }
 
-static void meet(Cutter *c, uint32_t i, uint32_t j)
+static void meet(Cutter *c, const EdgeOrder *o, uint32_t i, uint32_t j)
 {
-    const uint32_t *e = c->edge[i], *f = c->edge[j];
-    Vec2 a = place(c, e[0]), b = place(c, e[1]), p = place(c, f[0]), q = place(c, f[1]);
+    const uint32_t *e = o->edge[i], *f = o->edge[j];
+    Vec2 a = o->node[e[0]], b = o->node[e[1]], p = o->node[f[0]], q = o->node[f[1]];
     bool shared = e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1], touched = false;
     if (apart(c, a, b, p, q))
         return;
     for (int k = 0; k < 2; k++) {
-        touched |= f[k] != e[0] && f[k] != e[1] && touch(c, i, f[k]);
-        touched |= e[k] != f[0] && e[k] != f[1] && touch(c, j, e[k]);
+        touched |= f[k] != e[0] && f[k] != e[1] && touch(c, o, i, f[k]);
+        touched |= e[k] != f[0] && e[k] != f[1] && touch(c, o, j, e[k]);
     }
     if (touched || shared || turn_sign(a, b, p) * turn_sign(a, b, q) >= 0 || turn_sign(p, q, a) * turn_sign(p, q, b) >= 0)
         return;
-    Crossing x = {MIN(i, j), MAX(i, j)};
+    uint32_t one = o->was_edge[i], other = o->was_edge[j];
+    Crossing x = {MIN(one, other), MAX(one, other)};
     g_array_append_val(c->crossing, x);
     c->changed = true;
 }
 
-/* FALSE for a tangle. */
-static bool look(Cutter *c)
+/* Does an edge of the grid run near the box of edge ab? Those of a row of cells follow one another. */
+static bool beside(const EdgeGrid *g, Vec2 a, Vec2 b, double pad)
+{
+    uint32_t x0 = edge_grid_column(g, MIN(a.x, b.x) - pad), x1 = edge_grid_column(g, MAX(a.x, b.x) + pad);
+    uint32_t y0 = edge_grid_row(g, MIN(a.y, b.y) - pad), y1 = edge_grid_row(g, MAX(a.y, b.y) + pad);
+    for (uint32_t y = y0; y <= y1; y++)
+        if (g->start[(gsize)y * g->nx + x0] < g->start[(gsize)y * g->nx + x1 + 1])
+            return true;
+    return false;
+}
+
+/* Puts aside which edges are worth a look: fresh ones and what is beside them. Returns how many there are; list[i] is c->edge[was[i]]. */
+static uint32_t choose(const Cutter *c, uint32_t (*list)[2], uint32_t *was)
+{
+    const Vec2 *node = (const Vec2 *)(const void *)c->node->data;
+    const uint8_t *fresh = (const uint8_t *)c->fresh->data;
+    uint32_t n = 0;
+    EdgeGrid g;
+    for (uint32_t e = 0; e < c->n_edges; e++)
+        if (fresh[c->edge[e][0]] || fresh[c->edge[e][1]])
+            memcpy(list[n++], c->edge[e], sizeof *list);
+    edge_grid_init(&g, node, (const uint32_t (*)[2])list, n, sqrt(c->near2));
+    n = 0;
+    for (uint32_t e = 0; e < c->n_edges; e++)
+        if (beside(&g, node[c->edge[e][0]], node[c->edge[e][1]], sqrt(c->near2) + 1e-9 * g.cell)) {
+            was[n] = e;
+            memcpy(list[n++], c->edge[e], sizeof *list);
+        }
+    edge_grid_clear(&g);
+    return n;
+}
+
+static void look_around(Cutter *c, const EdgeOrder *o)
 {
     EdgeGrid g;
-    edge_grid_init(&g, (const Vec2 *)(const void *)c->node->data, (const uint32_t (*)[2])c->edge, c->n_edges, sqrt(c->near2));
-    c->changed = false;
+    edge_grid_init(&g, o->node, (const uint32_t (*)[2])o->edge, o->n_edges, sqrt(c->near2));
     gsize cells = (gsize)g.nx * g.ny;
     for (gsize k = 0; k < cells && c->crossing->len <= c->most; k++)
         for (uint32_t i = g.start[k]; i < g.start[k + 1] && c->crossing->len <= c->most; i++)
             for (uint32_t j = i + 1; j < g.start[k + 1]; j++)
-                meet(c, g.item[i], g.item[j]);
+                meet(c, o, g.item[i], g.item[j]);
     edge_grid_clear(&g);
+}
+
+/* At all edges, or at what has changed. FALSE for a tangle. */
+static bool look(Cutter *c, bool all)
+{
+    const Vec2 *node = (const Vec2 *)(const void *)c->node->data;
+    EdgeOrder o;
+    if (all) {
+        edge_order_init(&o, node, c->node->len, (const uint32_t (*)[2])c->edge, c->n_edges);
+    } else {
+        uint32_t (*list)[2] = g_malloc_n((gsize)c->n_edges + 1, sizeof *list), *was = g_new(uint32_t, (gsize)c->n_edges + 1);
+        uint32_t n = choose(c, list, was);
+        edge_order_init(&o, node, c->node->len, (const uint32_t (*)[2])list, n);
+        for (uint32_t i = 0; i < n; i++)
+            o.was_edge[i] = was[o.was_edge[i]];
+        g_free(list);
+        g_free(was);
+    }
+    c->changed = false;
+    if (c->fresh->len > 0)
+        memset(c->fresh->data, FALSE, c->fresh->len);
+    look_around(c, &o);
+    edge_order_clear(&o);
     return c->crossing->len <= c->most;
 }
 
@@ -151,8 +209,11 @@ static void add_crossings(Cutter *c)
         if (k == 0 || by_edges(&g_array_index(all, Crossing, k - 1), &g_array_index(all, Crossing, k), NULL) != 0)
             add_crossing(c, g_array_index(all, Crossing, k));
     c->same = g_renew(uint32_t, c->same, (gsize)c->node->len + 1);
-    for (uint32_t v = before; v < c->node->len; v++)
+    g_array_set_size(c->fresh, c->node->len);
+    for (uint32_t v = before; v < c->node->len; v++) {
         c->same[v] = v;
+        ((uint8_t *)c->fresh->data)[v] = TRUE;
+    }
     g_array_set_size(all, 0);
 }
 
@@ -199,6 +260,9 @@ static void sort_by_end(Cutter *c, int end)
 static void tidy(Cutter *c)
 {
     uint32_t n = 0;
+    for (guint v = 0; v < c->fresh->len; v++)
+        if (c->fresh->data[v])
+            c->fresh->data[root(c->same, v)] = TRUE;
     for (uint32_t e = 0; e < c->n_edges; e++) {
         uint32_t a = root(c->same, c->edge[e][0]), b = root(c->same, c->edge[e][1]);
         if (a == b)
@@ -224,6 +288,8 @@ static void cutter_init(Cutter *c, const Network *net)
     g_array_append_vals(c->node, net->node, net->n_nodes);
     c->split = g_array_new(FALSE, FALSE, sizeof(Split));
     c->crossing = g_array_new(FALSE, FALSE, sizeof(Crossing));
+    c->fresh = g_array_sized_new(FALSE, TRUE, 1, net->n_nodes);
+    g_array_set_size(c->fresh, net->n_nodes);
     c->same = g_new(uint32_t, (gsize)net->n_nodes + 1);
     for (uint32_t v = 0; v < net->n_nodes; v++) {
         c->same[v] = v;
@@ -245,7 +311,7 @@ Planar *planar_new(const Network *net)
     tidy(&c);
     bool fine = true;
     /* new nodes are rounded, and where many edges cross that may make them cross anew */
-    for (int round = 0; (fine = look(&c)) && c.changed && round < ROUNDS; round++) {
+    for (int round = 0; (fine = look(&c, round == 0)) && c.changed && round < ROUNDS; round++) {
         add_crossings(&c);
         divide(&c);
         tidy(&c);
@@ -262,6 +328,7 @@ Planar *planar_new(const Network *net)
         g_array_free(c.node, TRUE);
     g_array_free(c.split, TRUE);
     g_array_free(c.crossing, TRUE);
+    g_array_free(c.fresh, TRUE);
     g_free(c.edge);
     g_free(c.same);
     return p;

@@ -124,6 +124,29 @@ bool simulation_step(Simulation *s)
 
 /* ---- set-up ---- */
 
+/* A run that would throw darts for ever, or as good as. That one comes to an end at all is certain otherwise: once no source comes any more, each step
+ * bears a node, of which so many have room (`crowding` in develop.c), or some source lets go of a node for good. */
+static gboolean check_darts(const SimulationDef *d, const Blade *b, double area, GError **error)
+{
+    const double most = 1e11, longest = 1e6;
+    double steps = d->max_steps ? MIN(d->max_steps, b->last_step) : b->last_step, darts = d->density * area * steps;
+    if (darts > most) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "sources.density = %g asks for about %.2g darts in the %.0f steps of growth; at most %g are possible: it must be lower, or the blade "
+                    "grow in fewer steps", d->density, darts, steps, most);
+        return FALSE;
+    }
+    /* however small the distances, veins leave no more room than for one a segment apart (`crowding`, and how near a source is passed) */
+    double apart = MAX(MAX(d->birth_distance_veins, d->kill_distance), 1.0), wait = 1.0 / (d->density * apart * apart);
+    if (!d->max_steps && !d->only_while_growing && wait > longest && sources_are_many(d->density * area)) {
+        g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SIZE,
+                    "sources.density = %g throws a dart where there is room for one, %g segments apart from the veins, only every %.2g steps; at most %g are "
+                    "possible: it must be higher, or sources.duration = growth", d->density, apart, wait, longest);
+        return FALSE;
+    }
+    return TRUE;
+}
+
 static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
 {
     double first = d->leaf->area * d->growth.initial_length * d->growth.initial_length;
@@ -141,6 +164,8 @@ static gboolean check(const SimulationDef *d, const Blade *b, GError **error)
                     "most %.3g can be kept", d->density, d->birth_distance_sources, MIN(room, d->density * area), area, (double)MOST_SOURCES);
         return FALSE;
     }
+    if (d->placement == PLACEMENT_DARTS && !check_darts(d, b, area, error))
+        return FALSE;
     if (d->placement == PLACEMENT_DARTS && !d->only_while_growing && MAX(d->birth_distance_veins, d->kill_distance) <= 0.0) {
         g_set_error(error, SIMULATION_ERROR, SIMULATION_ERROR_SOURCES,
                     "sources.birth_distance_veins and veins.kill_distance are both 0, so darts would find room for ever: one of them must "

@@ -149,14 +149,20 @@ static void throw_darts(Simulation *s)
         throw_volley(s, i, (uint32_t)MIN(n - i, VOLLEY));
 }
 
+bool sources_are_many(double darts)
+{
+    const double patience = 10000.0, enough = 20.0; /* steps, darts */
+    return darts * patience > enough;
+}
+
 /* Where few darts are thrown a step, a blade without a source need not be full: only when some darts in a row have found no room. But where
  * sources keep no distance, there is always room for one that no vein can reach: nor may many darts in a row be in vain. */
 bool sources_expected(const Simulation *s)
 {
-    enum { ENOUGH = 20, PATIENCE = 10000, VAIN_DARTS = 100, VAIN_STEPS = 100 };
-    double darts = s->def.density * s->blade->area;
+    enum { ENOUGH = 20, VAIN_DARTS = 100, VAIN_STEPS = 100 };
     bool vain = s->counts.darts - s->last_darts >= VAIN_DARTS && s->blade->step - s->last_use >= VAIN_STEPS;
-    return s->def.placement == PLACEMENT_DARTS && !s->def.only_while_growing && s->misses < ENOUGH && !vain && darts * PATIENCE > ENOUGH;
+    return s->def.placement == PLACEMENT_DARTS && !s->def.only_while_growing && s->misses < ENOUGH && !vain &&
+           sources_are_many(s->def.density * s->blade->area);
 }
 
 /* Waiting sources whose time has come. The precomputed set keeps b_s already; a listed source is placed as the user wants it. */

@@ -185,6 +185,7 @@ gboolean sources_prepare(Simulation *s, GError **error);
 void sources_place(Simulation *s);          /* the step's new sources */
 bool sources_waiting(const Simulation *s);
 bool sources_expected(const Simulation *s); /* darts may still find room */
+bool sources_are_many(double darts);        /* so many a step are worth waiting for when the blade does not grow */
 
 /* slots.c */
 void source_add(Simulation *s, Vec2 p);       /* its neighbourhood is not known yet */

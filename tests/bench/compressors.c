@@ -1,6 +1,5 @@
 #include "compressors.h"
 
-#include <isa-l/igzip_lib.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,19 +22,7 @@ struct Plain {
     GByteArray *bytes, *packed;  /* of the band */
     gsize piece;                 /* bytes compressed on their own; 0: all of them go on with one stream */
     z_stream zlib;
-    struct isal_zstream stream;
-    uint8_t memory[ISAL_DEF_LVL3_DEFAULT];
 };
-
-static void begin_stream(struct isal_zstream *s, uint32_t level, uint8_t *memory)
-{
-    static const uint32_t size[] = {0, ISAL_DEF_LVL1_DEFAULT, ISAL_DEF_LVL2_DEFAULT, ISAL_DEF_LVL3_DEFAULT};
-    isal_deflate_init(s);
-    s->level = level;
-    s->level_buf = memory;
-    s->level_buf_size = size[level];
-    s->gzip_flag = IGZIP_ZLIB;
-}
 
 Plain *plain_new(PlainKind kind, const Plane *like, int depth)
 {
@@ -45,14 +32,14 @@ Plain *plain_new(PlainKind kind, const Plane *like, int depth)
     f->width = like->width;
     encoder_init(&f->encoder, like, depth);
     f->step = kind == PLAIN_PNG ? f->encoder.channels * (uint32_t)f->encoder.depth / 8 : like->channels * (half ? 2 : 4);
-    f->filter = like->kind == PLANE_LABEL ? NONE : UP;
+    f->filter = PAETH;
     f->piece = kind == PLAIN_EXR ? (gsize)f->width * f->step * CHUNK : 0;
     f->row[0] = g_malloc0((gsize)f->width * f->step);
     f->row[1] = g_malloc0((gsize)f->width * f->step);
     f->bytes = g_byte_array_new();
     f->packed = g_byte_array_new();
-    begin_stream(&f->stream, 1, f->memory);
-    if (deflateInit(&f->zlib, 1) != Z_OK)
+    gboolean strings = kind == PLAIN_EXR && !half && like->high > 255.0;
+    if (deflateInit2(&f->zlib, 1, Z_DEFLATED, 15, 8, strings ? Z_DEFAULT_STRATEGY : Z_RLE) != Z_OK)
         g_error("zlib failed");
     return f;
 }
@@ -129,32 +116,6 @@ void plain_fill(Plain *f, const Plane *band)
     g_byte_array_set_size(f->packed, f->bytes->len + f->bytes->len / 8 + 65536);
 }
 
-/* A piece, or one more of the stream. */
-static gsize compress_piece(Plain *f, const uint8_t *in, gsize n, uint32_t level)
-{
-    struct isal_zstream *s = &f->stream;
-    if (f->piece > 0) {
-        isal_deflate_stateless_init(s);
-        begin_stream(s, level, f->memory);
-        s->end_of_stream = 1;
-    }
-    s->next_in = (uint8_t *)(gintptr)in;
-    s->avail_in = (uint32_t)n;
-    s->next_out = f->packed->data;
-    s->avail_out = f->packed->len;
-    if ((f->piece > 0 ? isal_deflate_stateless(s) : isal_deflate(s)) != COMP_OK || s->avail_in > 0)
-        g_error("ISA-L failed");
-    return MIN(f->packed->len - s->avail_out, f->piece > 0 ? n : G_MAXSIZE);
-}
-
-static gsize compress_band(Plain *f, uint32_t level)
-{
-    gsize n = f->bytes->len, sum = 0, piece = f->piece > 0 ? f->piece : n;
-    for (gsize at = 0; at < n; at += piece)
-        sum += compress_piece(f, f->bytes->data + at, MIN(n - at, piece), level);
-    return sum;
-}
-
 gsize plain_compress(Plain *f)
 {
     gsize n = f->bytes->len, sum = 0, piece = f->piece > 0 ? f->piece : n;
@@ -180,22 +141,20 @@ static double thread_time(void)
     return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-enum { ISAL, ZLIB };
-
+/* Settings of zlib and the filter of PNG rows. */
 typedef struct {
     const char *name;
-    int kind;
-    int level, strategy, filter; /* filter -1: as the library does; other than that it is for all maps */
+    int level, strategy, filter;
     double seconds[2];
     gsize bytes[2];
 } Trial;
 
-static gsize zlib_band(const Plain *f, z_stream *z, const Trial *t)
+static gsize try_band(const Plain *f, z_stream *z)
 {
     gsize n = f->bytes->len, sum = 0, piece = f->piece > 0 ? f->piece : n;
     for (gsize at = 0; at < n; at += piece) {
         if (f->piece > 0)
-            deflateInit2(z, t->level, Z_DEFLATED, 15, 8, t->strategy);
+            deflateReset(z);
         z->next_in = f->bytes->data + at;
         z->avail_in = (uInt)MIN(n - at, piece);
         z->next_out = f->packed->data;
@@ -203,8 +162,6 @@ static gsize zlib_band(const Plain *f, z_stream *z, const Trial *t)
         deflate(z, f->piece > 0 ? Z_FINISH : Z_NO_FLUSH);
         gsize got = f->packed->len - z->avail_out;
         sum += f->piece > 0 ? MIN(got, MIN(n - at, piece)) : got;
-        if (f->piece > 0)
-            deflateEnd(z);
     }
     return sum;
 }
@@ -213,31 +170,32 @@ static void try_map(const Plane *plane, gboolean wide, gboolean exr, Trial *t)
 {
     Plain *f = plain_new(exr ? PLAIN_EXR : PLAIN_PNG, plane, wide ? 16 : 8);
     z_stream z = {0};
-    if (t->filter >= 0)
-        f->filter = t->filter;
-    if (t->kind == ZLIB && !exr)
-        deflateInit2(&z, t->level, Z_DEFLATED, 15, 8, t->strategy);
-    else
-        begin_stream(&f->stream, (uint32_t)t->level, f->memory);
+    f->filter = t->filter;
+    deflateInit2(&z, t->level, Z_DEFLATED, 15, 8, t->strategy);
+    double seconds = 0.0;
+    gsize bytes = 0;
     for (uint32_t y = 0; y < plane->height; y += 128) {
         Plane band = *plane;
         band.height = MIN(128u, plane->height - y);
         band.px = plane->px + (gsize)y * plane->width * plane->channels;
         plain_fill(f, &band);
         double begin = thread_time();
-        t->bytes[exr] += t->kind == ZLIB ? zlib_band(f, &z, t) : compress_band(f, (uint32_t)t->level);
-        t->seconds[exr] += thread_time() - begin;
+        bytes += try_band(f, &z);
+        seconds += thread_time() - begin;
     }
-    if (t->kind == ZLIB && !exr)
-        deflateEnd(&z);
+    deflateEnd(&z);
     plain_free(f);
+    printf(" %8.0f %6.2f", seconds * 1e3, (double)bytes * 1e-6);
+    t->seconds[exr] += seconds;
+    t->bytes[exr] += bytes;
 }
 
 void compare_compressors(const VenLeaf *leaf, uint32_t size)
 {
-    Trial trial[] = {{"zlib 1", ZLIB, 1, Z_DEFAULT_STRATEGY, -1, {0}, {0}}, {"zlib 1, all Paeth, runs", ZLIB, 1, Z_RLE, PAETH, {0}, {0}},
-                     {"zlib 4", ZLIB, 4, Z_DEFAULT_STRATEGY, -1, {0}, {0}}, {"ISA-L 0", ISAL, 0, 0, -1, {0}, {0}},
-                     {"ISA-L 1", ISAL, 1, 0, -1, {0}, {0}},         {"ISA-L 3", ISAL, 3, 0, -1, {0}, {0}}};
+    Trial trial[] = {{"runs", 1, Z_RLE, PAETH, {0}, {0}},          {"strings", 1, Z_DEFAULT_STRATEGY, PAETH, {0}, {0}},
+                     {"level 4", 4, Z_DEFAULT_STRATEGY, PAETH, {0}, {0}}, {"runs, plain", 1, Z_RLE, NONE, {0}, {0}},
+                     {"runs, Sub", 1, Z_RLE, SUB, {0}, {0}},       {"runs, Up", 1, Z_RLE, UP, {0}, {0}},
+                     {"strings, plain", 1, Z_DEFAULT_STRATEGY, NONE, {0}, {0}}, {"strings, Up", 1, Z_DEFAULT_STRATEGY, UP, {0}, {0}}};
     Frame frame = frame_fit(leaf->net->margin->box, size, TRUE, 0.02);
     PaintStyle style = settings_style(leaf->params, leaf->seed, 1);
     Painter *painter = painter_new(leaf->net, &frame, &style);
@@ -245,20 +203,27 @@ void compare_compressors(const VenLeaf *leaf, uint32_t size)
     for (int id = 0; id < MAP_COUNT; id++)
         all[id] = TRUE;
     painter_expect(painter, all);
+    printf("\ncompressing maps of %u pixels, ms of processor time and MB\n%-22s", size, "");
+    for (gsize i = 0; i < G_N_ELEMENTS(trial); i++)
+        printf(" %15s", trial[i].name);
+    puts("");
     for (int id = 0; id < MAP_COUNT; id++) {
         Plane *plane = painter_paint(painter, (MapId)id);
-        gboolean wide = id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE;
-        for (gsize i = 0; i < G_N_ELEMENTS(trial); i++)
-            for (int exr = 0; exr < (trial[i].filter < 0 ? 2 : 1); exr++)
-                try_map(plane, wide, exr, &trial[i]);
+        gboolean wide = id == MAP_HEIGHT || id == MAP_THICKNESS || id == MAP_VEIN_WIDTH || id == MAP_DISTANCE || id == MAP_AGE || id == MAP_AREOLE;
+        for (int exr = 0; exr < 2; exr++) {
+            printf("%-18s %s", paint_map_info((MapId)id)->name, exr ? "exr" : "png");
+            for (gsize i = 0; i < G_N_ELEMENTS(trial); i++)
+                if (!exr || trial[i].filter == PAETH)
+                    try_map(plane, wide, exr, &trial[i]);
+            puts("");
+        }
         plane_free(plane);
     }
-    printf("\ncompressing maps of %u pixels, s of processor time, MB; Up and plain labels unless said otherwise\n%-26s png            exr\n", size, "");
-    for (gsize i = 0; i < G_N_ELEMENTS(trial); i++) {
-        const Trial *t = &trial[i];
-        printf("%-26s %5.2f %6.2f", t->name, t->seconds[0], (double)t->bytes[0] * 1e-6);
-        if (t->filter < 0)
-            printf("   %5.2f %6.2f", t->seconds[1], (double)t->bytes[1] * 1e-6);
+    for (int exr = 0; exr < 2; exr++) {
+        printf("%-18s %s", "together", exr ? "exr" : "png");
+        for (gsize i = 0; i < G_N_ELEMENTS(trial); i++)
+            if (!exr || trial[i].filter == PAETH)
+                printf(" %8.0f %6.2f", trial[i].seconds[exr] * 1e3, (double)trial[i].bytes[exr] * 1e-6);
         puts("");
     }
     painter_free(painter);

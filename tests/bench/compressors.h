@@ -1,4 +1,4 @@
-/* The plain floor of writing maps: the compressor alone, given bytes that are ready for it; and other compressors and settings beside it. */
+/* The plain floor of writing maps: the compressor alone, given bytes that are ready for it; and other settings of it beside. */
 #ifndef BENCH_COMPRESSORS_H
 #define BENCH_COMPRESSORS_H
 
@@ -18,7 +18,7 @@ void plain_fill(Plain *f, const Plane *band);
 /* Compresses them, and gives the result up; bytes. */
 gsize plain_compress(Plain *f);
 
-/* Prints time and size of what a full set would take with other filters, levels and libraries. */
+/* Prints times and sizes of each map with other filters, levels and strategies. */
 void compare_compressors(const VenLeaf *leaf, uint32_t size);
 
 #endif

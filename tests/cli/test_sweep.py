@@ -6,11 +6,13 @@
 import csv
 import hashlib
 import json
+import math
 import os
 import pty
 import random
 import re
 import resource
+import shlex
 import shutil
 import signal
 import struct
@@ -48,6 +50,7 @@ veins.kill_distance = 1; 2; 4
 veins.pattern = open | closed
 seed = 1; 2
 """
+PARAMS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "params")
 
 
 def sweep_file(text=GRID, name="many.ini"):
@@ -159,6 +162,16 @@ def test_dry_run():
     same(run("sweep", "many.ini", "--dry-run", "--collect").status, 2)
 
 
+def test_dry_run_tells_why_its_leaf_fails():
+    text = "[sweep]\nparams = leaf.ini\nmode = zip\nname = a; b; c\ngrowth.initial_length = 20; 90; 30\n"
+    result = sweep(sweep_file(text), "--dry-run", status=3)
+    holds(result.err, "3 variants; number 1, grown for a trial, failed")
+    same(len(result.out.splitlines()), 3)
+    told = sweep("many.ini", "--dry-run", "-o", "out", status=3).err.splitlines()[-1]
+    holds(told, "venation: b: ")
+    holds(sweep("many.ini", status=3).err, told)
+
+
 def test_dry_run_on_a_terminal():
     """The first variants alone, and the estimate after them; in a pipe all, and the estimate before them."""
     sweep_file("[sweep]\nparams = leaf.ini\nseed = from 1 to 1000 by 1\n")
@@ -234,9 +247,26 @@ def read_png(name):
     return width, height, values
 
 
-def inside(ring, x, y):
-    points = list(zip(ring[::2], ring[1::2]))
-    return sum((a[1] > y) != (b[1] > y) and x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) for a, b in zip(points, points[1:] + points[:1])) % 2 == 1
+def region(annotation, height):
+    """The pixels of a run-length encoded annotation: (x, y), runs down the columns, the first one outside."""
+    runs, at, pixels = annotation["segmentation"]["counts"], 0, set()
+    for k, length in enumerate(runs):
+        if k % 2 == 1:
+            pixels.update((i // height, i % height) for i in range(at, at + length))
+        if length == 0 and k > 0:
+            raise AssertionError("an empty run")
+        at += length
+    return pixels, at
+
+
+def check_region(annotation, wanted, width, height):
+    """It is of these very pixels, and so are its area and box."""
+    found, size = region(annotation, height)
+    same((annotation["segmentation"]["size"], size), ([height, width], width * height))
+    same(found == wanted, True, f"{len(found)} pixels for {len(wanted)}, {len(found ^ wanted)} amiss")
+    xs, ys = [x for x, _ in wanted], [y for _, y in wanted]
+    same((annotation["area"], annotation["bbox"]), (len(wanted), [min(xs), min(ys), max(xs) + 1 - min(xs), max(ys) + 1 - min(ys)]))
+    same(annotation["iscrowd"], 0)
 
 
 def shoelace(ring):
@@ -252,6 +282,7 @@ def check_annotations(split):
     if sum(a["category_id"] == 2 for a in coco["annotations"]) < 10:
         raise AssertionError("hardly any areoles: the test shows nothing")
     same(len({a["id"] for a in coco["annotations"]}), len(coco["annotations"]), "different numbers")
+    small, thin, least = 0, 0, math.inf
     for image in coco["images"]:
         marks = [a for a in coco["annotations"] if a["image_id"] == image["id"]]
         same([a["category_id"] for a in marks], [1] + [2] * (len(marks) - 2) + [3])
@@ -259,42 +290,46 @@ def check_annotations(split):
         for kind in ("images", "lamina", "vein", "order", "areole"):
             width, height, masks[kind] = read_png(f"out/many/dataset/{kind}/{split}/{image['file_name']}")
             same((width, height), (image["width"], image["height"]))
-        for a in marks[:-1]:
-            ring = a["segmentation"][0]
-            same(all(0 <= v <= width for v in ring), True)
-            same(abs(shoelace(ring) - a["area"]) <= 0.02 * a["area"] + 2, True, f"area {a['area']} of {shoelace(ring)}")
-            xs, ys = ring[::2], ring[1::2]
-            for found, wanted in zip(a["bbox"], (min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys))):
-                same(abs(found - wanted) < 1, True, "box")
-        same(abs(marks[0]["area"] - sum(masks["lamina"]) / 255) < 0.01 * marks[0]["area"], True, "lamina")
-        runs, at = marks[-1]["segmentation"]["counts"], 0
-        same(sum(runs), width * height)
-        for k, run_length in enumerate(runs):
-            for i in range(at, at + run_length):
-                if (masks["vein"][i % height * width + i // height] >= 128) != (k % 2 == 1) and masks["vein"][i % height * width + i // height] != 127:
-                    raise AssertionError(f"pixel {i} of {image['file_name']}")
-            at += run_length
-        # Pixels of an areole's label lie in its polygon, but for those on its edge.
-        for label, a in enumerate(marks[1:-1], 1):
-            pixels = [i for i, v in enumerate(masks["areole"]) if v == label]
-            outside = sum(not inside(a["segmentation"][0], i % width + 0.5, i // width + 0.5) for i in pixels)
-            same(outside <= 0.1 * len(pixels) + 1, True, f"areole {label}: {outside} of {len(pixels)} outside")
-        same(max(masks["areole"]) <= len(marks) - 2, True, "labels")
-    return {i["file_name"] for i in coco["images"]}
+        lamina, areoles, vein = marks[0], marks[1:-1], marks[-1]
+        ring = lamina["segmentation"][0]
+        same(all(0 <= v <= width for v in ring), True)
+        same(abs(shoelace(ring) - lamina["area"]) <= 0.02 * lamina["area"] + 2, True, f"area {lamina['area']} of {shoelace(ring)}")
+        xs, ys = ring[::2], ring[1::2]
+        for found, wanted in zip(lamina["bbox"], (min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys))):
+            same(abs(found - wanted) < 1, True, "box")
+        same(abs(lamina["area"] - sum(masks["lamina"]) / 255) < 0.01 * lamina["area"], True, "lamina")
+        # Veins are where there is an order, which thin veins have where they cover too little of the pixel to be seen by that.
+        ordered = {(i % width, i // width) for i, v in enumerate(masks["order"]) if v}
+        check_region(vein, ordered, width, height)
+        thin += sum(masks["vein"][y * width + x] < 128 for x, y in ordered)
+        # Areoles are the map's, all but small ones.
+        wanted = {}
+        for i, v in enumerate(masks["areole"]):
+            wanted.setdefault(v, set()).add((i % width, i // width))
+        wanted.pop(0)
+        same([a["label"] for a in areoles], sorted(label for label, pixels in wanted.items() if len(pixels) >= 16))
+        for a in areoles:
+            check_region(a, wanted[a["label"]], width, height)
+        small += len(wanted) - len(areoles)
+        least = min([least] + [a["area"] for a in areoles])
+    if small == 0 or thin == 0:
+        raise AssertionError("no small areoles or no thin veins: the test shows nothing")
+    return {i["file_name"] for i in coco["images"]}, least
 
 
 DATASET = "[sweep]\nparams = leaf.ini\nmode = sample\ncount = 10\nseed = each\nveins.kill_distance = uniform(1, 2)\n"
 
 
 def test_dataset():
-    sweep(sweep_file(DATASET), "-q", "--dataset", "--size", "96", "--validation", "0.4")
-    train, val = check_annotations("train"), check_annotations("val")
+    sweep(sweep_file(DATASET), "-q", "--dataset", "--size", "112", "--validation", "0.4")
+    (train, least), (val, other) = check_annotations("train"), check_annotations("val")
+    same(min(least, other), 16, "the smallest areole told: the test sees where they begin")
     same((len(train | val), len(train & val)), (10, 0))
     same(bool(train) and bool(val), True, "both have some")
     holds(open("out/many/dataset/README.txt", encoding="utf-8").read(), f"{len(train)} to train with, {len(val)} to validate")
     for i in (1, 2, 3):
-        sweep("many.ini", "-q", "--dataset", "--size", "96", "--shard", f"{i}/3", "-o", "shards")
-    sweep("many.ini", "-q", "--dataset", "--size", "96", "--validation", "0.4", "-o", "shards", "--collect")
+        sweep("many.ini", "-q", "--dataset", "--size", "112", "--shard", f"{i}/3", "-o", "shards")
+    sweep("many.ini", "-q", "--dataset", "--size", "112", "--validation", "0.4", "-o", "shards", "--collect")
     same(contents("shards") == contents("out/many"), True, "three shards")
 
 
@@ -306,6 +341,30 @@ def test_dataset_parts_by_seed():
             side.setdefault(re.search(r"seed-(\d+)", name).group(1), set()).add(split)
     same(len(side), 8)
     same({len(s) for s in side.values()}, {1}, "leaves of one seed are on one side")
+
+
+def test_training_leaves_grow():
+    """A small leaf of each row of species.csv: grown, hardly a source given up, veins all over the blade and no more of them than there is room for."""
+    length, distance = 280, 7
+    os.mkdir("sweeps")
+    os.symlink(f"{PARAMS}/outlines", "outlines")
+    write("sweeps/all.ini", f"[sweep]\nparams = {PARAMS}/kill-distance.ini\nmode = zip\ntable = {PARAMS}/sweeps/species.csv\n")
+    sweep("sweeps/all.ini", "-q", "--cell", "0", "--dataset", "--size", "64", "--set", f"growth.final_length={length}", "--set", f"sources.birth_distance_sources={distance}",
+          "--set", f"sources.birth_distance_veins={distance}")
+    with open(f"{PARAMS}/sweeps/species.csv", encoding="utf-8") as file:
+        wanted = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    found = rows("out/all")
+    same(len(found), len(wanted))
+    for row, leaf in zip(wanted, found):
+        what = f"{leaf['variant']} ({row['outline.file']}, {row['growth.kind']}, {row['veins.pattern']})"
+        same(leaf["outcome"], "grown", what)
+        same(leaf["sources_given_up"] <= 0.01 * leaf["sources_reached"], True, f"{what}: {leaf['sources_given_up']} given up of {leaf['sources_reached']}")
+        # Veins as far from one another as sources are: a length of 1 / distance or so in a unit of the blade; open ones are fewer.
+        density = leaf["vein_length"] / leaf["blade_area"]
+        same(0.1 / distance < density < 1.5 / distance, True, f"{what}: density {density}")
+        split = "train" if os.path.exists(f"out/all/dataset/vein/train/{leaf['variant']}.png") else "val"
+        _, _, vein = read_png(f"out/all/dataset/vein/{split}/{leaf['variant']}.png")
+        same(sum(v > 0 for v in vein) > 64, True, f"{what}: hardly a vein in the mask")
 
 
 # --- whichever way it is made -----------------------------------------------------------------------------------
@@ -322,24 +381,129 @@ def test_threads_shards_and_order():
     same(contents("shards") == wanted, True, "three shards")
 
 
-def test_killed_at_any_moment():
-    sweep(sweep_file(), "-q", "-o", "whole")
+def kill_often(*options, wanted=10):
+    """Kills runs at moments from beginning to end of a whole one, until so many were killed at work; one that was faster makes room for a new one."""
     began = time.monotonic()
-    sweep("many.ini", "-q", "-o", "whole", "--set", "leaf.title=Once more")
-    took = time.monotonic() - began
-    shutil.rmtree("whole")
-    sweep("many.ini", "-q", "-o", "whole")
-    chance, killed = random.Random(7), 0
-    for _ in range(10):
-        killed += stop_at_random(["many.ini", "-q", "-o", "killed"], chance.uniform(0.02, 0.25 * took))
+    sweep("many.ini", "-q", "-o", "whole", *options)
+    took, chance, killed = time.monotonic() - began, random.Random(7), 0
+    for _ in range(20 * wanted):
+        if killed == wanted:
+            break
+        moment = took * (killed + chance.uniform(0, 1)) / wanted
+        if stop_at_random(["many.ini", "-q", "-o", "killed", *options], max(moment, 0.01)):
+            killed += 1
+        else:
+            shutil.rmtree("killed")
+            took *= 0.95  # the first run was slow, or the machine
         for d, folders, names in os.walk("killed/leaves"):  # whole or not there
-            if not folders and "sweep.json" not in names:
+            if not folders and d != "killed/leaves" and "sweep.json" not in names:
                 raise AssertionError(f"{d}: half there: {names}")
-    if killed < 3:
-        raise AssertionError(f"killed {killed} times only")
-    sweep("many.ini", "-q", "-o", "killed")
+    same(killed, wanted, "kills")
+    sweep("many.ini", "-q", "-o", "killed", *options)
     same(files("killed"), files("whole"))
     same(contents("killed") == contents("whole"), True, "after kills")
+
+
+def test_killed_at_any_moment():
+    sweep_file()
+    kill_often()
+
+
+def test_data_set_killed_at_any_moment():
+    sweep_file()
+    kill_often("--dataset", "--size", "48")
+
+
+def refused(options, *parts):
+    """With one message."""
+    told = sweep("many.ini", *options, status=3).err
+    same(told.count("\n"), 1, told)
+    for part in parts:
+        holds(told, part)
+
+
+def first_of(folder, suffix, number=0):
+    return os.path.join(folder, rows(folder)[number]["folder"], rows(folder)[number]["variant"] + suffix)
+
+
+def test_damaged_leaves_are_grown_anew():
+    """What a power failure or somebody did to a finished leaf."""
+    sweep(sweep_file(), "-q")
+    before = contents("out/many")
+    os.truncate(first_of("out/many", "_opacity.png", 2), 0)
+    os.remove(first_of("out/many", ".svg", 7))
+    write(f"out/many/{rows('out/many')[4]['folder']}/.notes", "x")  # a file manager's, as it were
+    refused(["--collect"], "files of 2 leaves are not what they were", rows("out/many")[2]["folder"])
+    holds(sweep("many.ini").err, "2 leaves grown, 10 were there")
+    after = contents("out/many")
+    same([after.pop(name) for name in list(after) if name.endswith(".notes")], [b"x"])
+    same(after == before, True, "as before")
+
+
+def test_data_set_is_made_of_what_was_written():
+    """Of the same length, but other bytes."""
+    options = ["--dataset", "--size", "32"]
+    sweep(sweep_file(), "-q", *options)
+    before = contents("out/many")
+    mask = first_of("out/many", "_vein_mask.png", 3)
+    with open(mask, "r+b") as file:
+        file.seek(-20, os.SEEK_END)
+        file.write(b"?")
+    refused([*options, "--collect"], "files of 1 leaf are not", rows("out/many")[3]["folder"], "run the sweep again")
+    holds(sweep("many.ini", *options).err, "1 leaf grown, 11 were there")
+    same(contents("out/many") == before, True, "as before")
+
+
+def test_other_options_take_no_leaves_away():
+    sweep(sweep_file(), "-q")
+    before = contents("out/many")
+    cases = {"texture.maps": ["--write", "none"], "texture.size)": ["--size", "32"], "export.specimen": ["--dataset"], "width.exponent": ["--set", "width.exponent=3"],
+             "veins.seeds": ["--set", "veins.seeds = 0.1,0"], "--cell": ["--cell", "64"]}
+    for named, options in cases.items():
+        for more in ([], ["--shard", "2/3"]):
+            refused([*options, *more], "out/many: ", "of the leaves there are of other parameters or options (", named, "--replace")
+    same(contents("out/many") == before, True, "nothing is touched")
+    holds(sweep("many.ini", "--replace").err, "0 leaves grown, 12 were there")
+    holds(sweep("many.ini", "--size", "32", "--replace").err, "12 leaves grown, 0 were there")
+    holds(sweep("many.ini", "--size", "32").err, "0 leaves grown, 12 were there")
+
+
+def test_the_command_that_collects():
+    """As it is told after a part it does the rest."""
+    write("my leaf's.ini", open(sweep_file(), encoding="utf-8").read())
+    options = ["-o", "a b", "--set", "leaf.title=It's one", "--set", "width.exponent=3", "--dataset", "--validation", "0.5", "--size", "32"]
+    for part in (1, 2):
+        told = sweep("my leaf's.ini", *options, "--shard", f"{part}/2", "--threads", "2").err
+    command = re.search(r"after the last one: venation (sweep .* --collect)$", told, re.MULTILINE).group(1)
+    for left in ("--shard", "--threads"):
+        lacks(command, left)
+    result = run(*shlex.split(command))
+    same(result.status, 0, result.err)
+    sweep("my leaf's.ini", *options, "-q", "-o", "whole")
+    same(contents("a b") == contents("whole"), True, "collected")
+
+
+def peak(*args):
+    """Most memory of a sweep that ended well, KiB."""
+    process = subprocess.Popen([VENATION, "sweep", *args, "-q", "--threads", "2"], stdin=subprocess.DEVNULL, env=environment())
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    same(process.returncode, 0)
+    return used.ru_maxrss
+
+
+def test_memory_does_not_go_with_the_number():
+    """With small cells: a sheet needs as much as it is wide."""
+    with open(VENATION, "rb") as file:
+        if b"__asan_init" in file.read():
+            raise Skip("a sanitizer keeps what is freed")
+    for few, many, options in ((10, 2000, ["--write", "none", "--cell", "16"]), (10, 300, ["--dataset", "--size", "32", "--cell", "32"])):
+        used = []
+        for count in (few, many):
+            sweep_file(f"[sweep]\nparams = leaf.ini\nseed = from 1 to {count} by 1\n")
+            used.append(peak("many.ini", "-o", f"{count}-{len(options)}", "--set", "growth.final_length=22", *options))
+        if used[1] - used[0] > 8 * 1024:
+            raise AssertionError(f"{used} KiB for {few} and {many}")
 
 
 def test_two_at_once():
@@ -481,9 +645,10 @@ def test_does_only_what_is_missing():
     same(os.stat(kept).st_mtime_ns, age)
     same(rows("out/many"), first)
     # Other parameters, another outline: other leaves.
-    holds(sweep("many.ini", "--set", "width.exponent=3").err, "12 leaves grown, 0 were there")
+    holds(sweep("many.ini", "--set", "width.exponent=3", "--replace").err, "12 leaves grown, 0 were there")
     write("blade.svg", BLADE.replace("-50", "-60"))
-    holds(sweep("many.ini", "--set", "width.exponent=3").err, "12 leaves grown, 0 were there")
+    refused(["--set", "width.exponent=3"], "12 of the leaves there are of other parameters or options (a file they name")
+    holds(sweep("many.ini", "--set", "width.exponent=3", "--replace").err, "12 leaves grown, 0 were there")
     holds(sweep("many.ini", "--collect", status=3).err, "12 of the leaves there are of other parameters")
 
 
@@ -497,8 +662,8 @@ def test_failures_are_kept_apart():
     same(os.listdir("out/many/failed"), [found[1]["variant"] + ".json"])
     same(len(os.listdir("out/many/leaves")), 2)
     holds(sweep("many.ini", status=3).err, "0 leaves grown, 2 were there, 1 failed")
-    holds(sweep("many.ini", "--set", "growth.final_length=100").err, "3 leaves grown")
-    same(os.listdir("out/many/failed"), [])
+    holds(sweep("many.ini", "--set", "growth.final_length=100", "--replace").err, "3 leaves grown")
+    same(os.path.exists("out/many/failed"), False)
 
 
 def test_full_disk_stops_the_run():

@@ -4,7 +4,7 @@
     faults.py VENATION FAIL_ALLOC FAIL_WRITE [--every] [--only WORD] [--jobs N]
 
 FAIL_ALLOC and FAIL_WRITE are the shims beside this file. By default the n-th call fails for the first n, the last, and some between; with --every
-for every n of every run (a quarter of an hour). --only: tests with that word in their names.
+for every n of every run (two hundred thousand runs, some hours on two cores). --only: tests with that word in their names.
 """
 import argparse
 import concurrent.futures
@@ -428,13 +428,16 @@ def tests():
         yield (f"disk: sweep, {kind} {errno.errorcode[number]} {mode}",
                lambda k=kind, x=number, m=mode: sweep(Many("sweep", (*many, "32"), None, WRITE, FAULT_KIND=k, FAULT_ERRNO=str(x)), names_reason(x), m))
     grow, frames, shape = (RUNS[i][1] for i in range(3))
+    capture = next(args for name, args, _ in RUNS if name == "png")
     yield "disk: files may not grow", lambda: test_file_limit(grow)
     yield "disk: full, grow", lambda: test_full_disk(grow)
     yield "disk: full, shape", lambda: test_full_disk(shape)
-    yield "disk: folder removed", lambda: test_folder_removed(frames, 100 if EVERY else 20)
-    for number in signal.SIGINT, signal.SIGTERM, signal.SIGKILL:
-        for name, args, earlier in RUNS[:3]:
-            yield f"signal: {number.name}, {name}", lambda a=args, e=earlier, x=number: signalled(a, e, x, 300 if EVERY else 15)
+    yield "disk: full, capture", lambda: test_full_disk(capture)
+    for name, args in ("frames", frames), ("shape", shape), ("capture", capture):
+        yield f"disk: folder removed, {name}", lambda a=args: test_folder_removed(a, 100 if EVERY else 10)
+    for number in signal.SIGINT, signal.SIGTERM, signal.SIGKILL:  # sweeps: cli/test_sweep.py
+        for name, args, earlier in [r for r in RUNS if r[1] in (grow, frames, shape, capture)]:
+            yield f"signal: {number.name}, {name}", lambda a=args, e=earlier, x=number: signalled(a, e, x, 300 if EVERY else 12)
 
 
 def main():

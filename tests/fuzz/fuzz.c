@@ -3,9 +3,16 @@
 #include <fcntl.h>
 #include <glib/gstdio.h>
 #include <stdio.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "geom/random.h"
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define __SANITIZE_ADDRESS__ 1
+#endif
+#endif
 
 void fuzz_broken(const char *promise, const char *file, int line)
 {
@@ -76,6 +83,15 @@ char *fuzz_part(const uint8_t *data, size_t size, unsigned k)
 }
 
 #ifndef FUZZ
+
+/* Small inputs ask for little memory: more than this is none. But sanitizers reserve terabytes. */
+static void limit_memory(void)
+{
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    struct rlimit memory = {(rlim_t)1 << 30, (rlim_t)1 << 30};
+    setrlimit(RLIMIT_AS, &memory);
+#endif
+}
 
 /* ---- a dictionary, as libFuzzer has it: "bytes with \xNN" a line, perhaps after name= ---- */
 
@@ -214,6 +230,7 @@ static void add_inputs(GPtrArray *inputs, const char *path)
 int main(int argc, char **argv)
 {
     uint64_t mutations = 2000;
+    limit_memory();
     GPtrArray *words = NULL, *inputs = g_ptr_array_new_with_free_func((GDestroyNotify)g_byte_array_unref);
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "-n") == 0 && i + 1 < argc)

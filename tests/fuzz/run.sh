@@ -39,7 +39,7 @@ fuzz() {
     shift
     ninja -C "$out/build" -j2 "tests/fuzz_$name" >&2
     mkdir -p "$out/found-$name" "$out/grown-$name"
-    "$out/build/tests/fuzz_$name" -max_total_time=$((minutes * 60)) -timeout=120 -rss_limit_mb=2048 -max_len=40000 -print_final_stats=1 \
+    "$out/build/tests/fuzz_$name" -max_total_time=$((minutes * 60)) -timeout=120 -rss_limit_mb=2048 -malloc_limit_mb=512 -max_len=40000 -print_final_stats=1 \
         -dict="$root/tests/fuzz/dict/$(dictionary "$name").dict" -artifact_prefix="$out/found-$name/" "$@" \
         "$out/grown-$name" "$root/tests/fuzz/corpus/$name" $(examples "$name")
 }

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Do all models still come out as they did?
 
-usage: snapshot.py VENATION PARAMS_DIR SNAPSHOT_FILE [--update]
+usage: snapshot.py VENATION PARAMS_DIR SNAPSHOT_FILE [--update] [--threads=N,…]
 
-Grows every PARAMS_DIR/*.ini, made small by sizes.txt beside this script, with 1, 2 and 7 threads, and compares the network's hash,
+Grows every PARAMS_DIR/*.ini, made small by sizes.txt beside this script, with 1, 2 and 7 threads (or so many), and compares the network's hash,
 that of the bent blade and the pixels of every map with SNAPSHOT_FILE: a line "model item hash" for each. Pixels, not file bytes, which depend on the
 version of zlib. Speaks TAP. After a change that is meant to change leaves:
 
@@ -21,7 +21,7 @@ import time
 import zlib
 from concurrent.futures import ThreadPoolExecutor
 
-THREADS = (1, 2, 7)
+THREADS = [1, 2, 7]
 COMMON = ("texture.size=192", "texture.depth=16", "texture.exr=none", "texture.maps=all", "export.svg=no", "export.network=no")
 CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
 
@@ -147,7 +147,10 @@ def write(path, results):
 
 def main():
     update = "--update" in sys.argv
-    words = [a for a in sys.argv[1:] if a != "--update"]
+    for a in sys.argv[1:]:
+        if a.startswith("--threads="):
+            THREADS[:] = [int(n) for n in a[10:].split(",")]
+    words = [a for a in sys.argv[1:] if a != "--update" and not a.startswith("--threads=")]
     if len(words) != 3 or any(w.startswith("-") for w in words):
         sys.stderr.write(__doc__)
         return 2

@@ -339,6 +339,37 @@ static void test_touching(void)
     network_free(none);
 }
 
+/* Lines that all but meet in one point, for which it takes several looks; far from there lies a net where nothing crosses. */
+static void test_star(void)
+{
+    enum { MOST = 9 };
+    uint64_t c = 5000000;
+    for (uint32_t n = 2; n <= MOST; n++)
+        for (int times = 0; times < 20; times++) {
+            Vec2 middle = vec2(3.0 + uniform(&c), 3.0 + uniform(&c)), node[2 * MOST + 3] = {{20.0, 0.0}, {30.0, 1.0}, {25.0, 9.0}};
+            uint32_t edge[3 * MOST + 3][2] = {{0, 1}, {1, 2}, {2, 0}}, m = 3;
+            for (uint32_t i = 0; i < 2 * n; i++) {
+                double turn = acos(-1.0) * (i % n + 0.8 * uniform(&c)) / n, reach = (i < n ? 1.0 : -1.0) * (1.0 + 0.3 * uniform(&c));
+                Vec2 way = vec2(cos(turn), sin(turn));
+                if (i >= n)
+                    way = vec_scale(vec_sub(node[3 + i - n], middle), 1.0 / vec_dist(node[3 + i - n], middle));
+                node[3 + i] = vec_add(middle, vec_scale(way, reach));
+                edge[m][0] = 3 + i;
+                edge[m++][1] = 3 + (i + 1) % (2 * n);
+            }
+            for (uint32_t i = 0; i < n; i++) {
+                edge[m][0] = 3 + i;
+                edge[m++][1] = 3 + i + n;
+            }
+            Network *net = net_of(node, 2 * n + 3, (const uint32_t (*)[2])edge, m);
+            Areoles *a = network_areoles(net);
+            check_rings(net, a);
+            g_assert_cmpuint(a->n, ==, 2 * n + 1);
+            areoles_free(a);
+            network_free(net);
+        }
+}
+
 /* ---- random ---- */
 
 static void check_net(Network *net, double size, uint32_t side)
@@ -523,6 +554,7 @@ int main(int argc, char **argv)
     g_test_add_func("/areole/hand", test_hand);
     g_test_add_func("/areole/islands", test_islands);
     g_test_add_func("/areole/touching", test_touching);
+    g_test_add_func("/areole/star", test_star);
     g_test_add_func("/areole/random", test_random);
     g_test_add_func("/areole/tangle", test_tangle);
     g_test_add_func("/areole/grown", test_grown);

@@ -1,9 +1,10 @@
 /* Random points of the whole parameter table: each leaf is grown, shaped and written, or refused with a reason, in bounded time and memory, and no number
- * that comes out is infinite or none. Three points of four are small leaves, whose runs must end by themselves; the others may be of any size, and
- * must be ready to stop.
+ * that comes out, to its last file, is infinite or none. Three points of four are small leaves, whose runs must end by themselves; the others may be of any
+ * size, and must be ready to stop.
  *
- *     test_extremes                   a few hundred points
+ *     test_extremes                   some hundred points
  *     test_extremes -n 5000 -f 1000   so many, from that one on, with more time for each; of a single one all settings are told
+ *     test_extremes -n 5000 -t 60     all of them may grow for so many seconds, before they are told to stop
  *
  * A point that fails is told by the few settings that it takes. */
 #include <gio/gio.h>
@@ -17,6 +18,7 @@
 #include <unistd.h>
 
 #include "../fuzz/sound.h"
+#include "finite.h"
 #include "geom/random.h"
 #include "lib/settings.h"
 #include "lib/shape.h"
@@ -33,7 +35,7 @@ enum { SANITIZED = 0 };
 #endif
 
 /* What became of a point: exit statuses of its child. */
-enum { DONE = 0, REFUSED = 10, STOPPED = 11, BROKEN = 12 }; /* statuses 2 … 9 are sanitizers' */
+enum { DONE = 0, REFUSED = 10, STOPPED = 11, BROKEN = 12, ENDLESS = 13 }; /* statuses 2 … 9 are sanitizers' */
 
 /* ---- points ---- */
 
@@ -287,18 +289,26 @@ static bool is_text(const char *name)
     return false;
 }
 
-/* Of all files of a folder; of a glTF its JSON, which tells the bounds of its numbers. */
+/* Of all files of a folder. */
 static void check_files(const char *folder)
 {
     GDir *dir = g_dir_open(folder, 0, NULL);
     for (const char *name; dir && (name = g_dir_read_name(dir)) != NULL;) {
-        char *path = g_build_filename(folder, name, NULL), *text;
+        char *path = g_build_filename(folder, name, NULL), *text = NULL;
+        bool glb = g_str_has_suffix(name, ".glb"), ply = g_str_has_suffix(name, ".ply");
+        gsize size = 0;
         require(!strstr(name, ".tmp"));
-        if (is_text(name)) {
-            require(g_file_get_contents(path, &text, NULL, NULL));
-            check_text(path, g_str_has_suffix(name, ".glb") ? text + 20 : text);
-            g_free(text);
-        }
+        if (is_text(name) || ply)
+            require(g_file_get_contents(path, &text, &size, NULL));
+        if (is_text(name))
+            check_text(path, glb ? text + 20 : text); /* of a glTF its JSON, which ends at the next chunk's zero bytes at the latest */
+        if (glb)
+            finite_glb(text, size);
+        if (ply)
+            finite_ply(text, size);
+        if (g_str_has_suffix(name, ".exr"))
+            finite_exr(path);
+        g_free(text);
         g_free(path);
     }
     if (dir)
@@ -379,18 +389,24 @@ static int try_leaf(const VenParams *params, const char *folder, bool small, dou
     /* no leaf of 45 segments takes so many steps but by growth, or for darts that fall so seldom */
     const uint32_t most_steps = 100000;
     GError *error = NULL;
-    Patience patience = {clock() + (clock_t)(seconds * CLOCKS_PER_SEC), 0};
+    clock_t start = clock();
+    Patience patience = {start + (clock_t)(seconds * CLOCKS_PER_SEC), 0};
     VenOptions options = {.threads = 1, .progress = go_on, .user = &patience};
     VenLeaf *leaf = ven_grow(params, 1, &options, &error);
+    fprintf(stderr, "%u steps in %.2f s\n", patience.steps, (double)(clock() - start) / CLOCKS_PER_SEC);
     require(!small || patience.steps < most_steps);
-    if (!leaf)
-        return refused(error);
+    if (!leaf) {
+        int status = refused(error);
+        return small && status == STOPPED ? ENDLESS : status;
+    }
     sound_network(leaf->net);
     check_maps(leaf);
     int status = DONE;
     if (ven_write(leaf, folder, "leaf", &error)) {
         check_files(folder);
-        if (params_number(params->values, PARAM_MESH_MAX_AREA) >= 1e-4 || params_number(params->values, PARAM_MESH_MAX_AREA) == 0.0)
+        double area = params_number(params->values, PARAM_MESH_MAX_AREA);
+        bool wide = params_integer(params->values, PARAM_TEXTURE_SIZE) > 4000; /* models hold their maps in memory: 144 bytes a pixel */
+        if ((area >= 1e-4 || area == 0.0) && !wide)
             shape_leaf(leaf, folder);
     } else {
         status = refused(error);
@@ -416,8 +432,9 @@ static int try_settings(const GPtrArray *point, const char *folder, bool small, 
 /* ---- many points ---- */
 
 typedef struct {
-    bool lengthy;  /* by hand: more time */
-    char *folder;  /* that children write to */
+    double small, large; /* seconds for which leaves may grow */
+    rlim_t seconds;      /* of a child */
+    char *folder;        /* that children write to */
 } Trial;
 
 static void empty_folder(const char *folder)
@@ -449,7 +466,7 @@ static int try_apart(const Trial *t, const GPtrArray *point, bool small, rlim_t 
         if (!freopen(said, "w", stderr) || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
             _exit(BROKEN);
         signal(SIGTRAP, SIG_DFL);
-        int status = try_settings(point, t->folder, small, t->lengthy ? 1.0 : small ? 3.0 : 0.1);
+        int status = try_settings(point, t->folder, small, small ? t->small : t->large);
         fflush(NULL);
         _exit(status);
     }
@@ -511,19 +528,37 @@ static void tell(const Trial *t, uint64_t index, const GPtrArray *point, int sta
 }
 
 static uint64_t from, count = 160;
+static double patience;
 static bool by_hand;
+
+static Trial trial_begin(void)
+{
+    GError *error = NULL;
+    double slow = SANITIZED ? 8.0 : 1.0;
+    Trial t = {.small = (by_hand ? 20.0 : 10.0) * slow, .large = by_hand ? 1.0 : 0.1};
+    if (patience > 0.0)
+        t.small = t.large = patience;
+    t.seconds = (rlim_t)((by_hand ? 40.0 : 20.0) * slow + patience);
+    t.folder = g_dir_make_tmp("venation-extremes-XXXXXX", &error);
+    g_assert_no_error(error);
+    return t;
+}
+
+static void trial_end(Trial *t)
+{
+    empty_folder(t->folder);
+    g_rmdir(t->folder);
+    g_free(t->folder);
+}
 
 static void test_points(void)
 {
-    GError *error = NULL;
-    Trial t = {.lengthy = by_hand, .folder = g_dir_make_tmp("venation-extremes-XXXXXX", &error)};
-    const rlim_t seconds = (by_hand ? 40 : 20) * (SANITIZED ? 8 : 1);
+    Trial t = trial_begin();
     uint32_t became[3] = {0}, failed = 0;
-    g_assert_no_error(error);
     for (uint64_t i = from; i < from + count; i++) {
         GPtrArray *point = point_new(i);
         gint64 start = g_get_monotonic_time();
-        int status = try_apart(&t, point, is_small(i), seconds);
+        int status = try_apart(&t, point, is_small(i), t.seconds);
         double took = (double)(g_get_monotonic_time() - start) * 1e-6;
         if (!is_fine(status)) {
             failed++;
@@ -538,15 +573,13 @@ static void test_points(void)
         }
         if (by_hand) {
             char *said = last_words(&t);
-            g_test_message("%" G_GUINT64_FORMAT ": %.1f s %s", i, took, g_strchomp(said));
+            g_test_message("%" G_GUINT64_FORMAT ": %.1f s %s", i, took, g_strdelimit(g_strchomp(said), "\n", ' '));
             g_free(said);
         }
         g_ptr_array_unref(point);
     }
     g_test_message("%u leaves were made, %u refused, %u stopped, %u failed", became[0], became[1], became[2], failed);
-    empty_folder(t.folder);
-    g_rmdir(t.folder);
-    g_free(t.folder);
+    trial_end(&t);
     g_assert_cmpuint(failed, ==, 0);
     g_assert_true(became[0] > count / 10 || count < 100); /* else nothing much was tried */
 }
@@ -561,21 +594,45 @@ static void test_found(void)
         {"growth.initial_length=20", "growth.kind=none", "texture.size=16384", "texture.maps=none", "export.veins_image=no"}, /* 36 GiB of maps */
         {"growth.initial_length=1000", "growth.final_length=1000", "sources.density=99", "sources.birth_distance_sources=0", "veins.pattern=open"}, /* memory */
         {"growth.initial_length=400", "growth.final_length=400", "sources.density=30", "sources.birth_distance_sources=0", "veins.pattern=open"}, /* likewise, at length */
+        {"growth.initial_length=20", "growth.final_length=40", "width.minimum=1000000", "texture.size=16", "texture.exr=half"}, /* more than a half can hold */
     };
-    Trial t = {.folder = g_dir_make_tmp("venation-extremes-XXXXXX", NULL)};
+    Trial t = trial_begin();
     for (guint i = 0; i < G_N_ELEMENTS(found); i++) {
         GPtrArray *point = g_ptr_array_new();
         for (guint k = 0; k < G_N_ELEMENTS(found[i]) && found[i][k]; k++)
             g_ptr_array_add(point, (gpointer)found[i][k]);
-        int status = try_apart(&t, point, true, SANITIZED ? 160 : 20);
+        int status = try_apart(&t, point, true, t.seconds);
         if (!is_fine(status))
             tell(&t, i, point, status);
         g_assert_true(is_fine(status) && WEXITSTATUS(status) != STOPPED);
         g_ptr_array_unref(point);
     }
-    empty_folder(t.folder);
-    g_rmdir(t.folder);
-    g_free(t.folder);
+    trial_end(&t);
+}
+
+/* Runs that would last for days are refused, with the key that makes them. */
+static void test_endless(void)
+{
+    static const char *const endless[][6] = {
+        {"growth.initial_length=5", "growth.step=1e-3", "sources.density=99", "is refused: sources.density"},
+        {"sources.density=1e-7", "sources.birth_distance_veins=0", "veins.kill_distance=1e-3", "is refused: sources.density"},
+        {"growth.initial_length=1e5", "growth.final_length=1e5", "sources.density=1e-9", "is refused: sources.density"},
+        {"growth.step=1e-6", "growth.final_length=5000", "is refused: growth.step"},
+    };
+    Trial t = trial_begin();
+    for (guint i = 0; i < G_N_ELEMENTS(endless); i++) {
+        GPtrArray *point = g_ptr_array_new();
+        guint k = 0;
+        for (; !g_str_has_prefix(endless[i][k], "is "); k++)
+            g_ptr_array_add(point, (gpointer)endless[i][k]);
+        int status = try_apart(&t, point, false, t.seconds);
+        char *text = last_words(&t);
+        g_test_message("%s", text);
+        g_assert_true(WIFEXITED(status) && WEXITSTATUS(status) == REFUSED && strstr(text, endless[i][k] + strlen("is ")));
+        g_free(text);
+        g_ptr_array_unref(point);
+    }
+    trial_end(&t);
 }
 
 int main(int argc, char **argv)
@@ -587,9 +644,13 @@ int main(int argc, char **argv)
             count = g_ascii_strtoull(argv[i + 1], NULL, 10);
         else if (strcmp(argv[i], "-f") == 0)
             from = g_ascii_strtoull(argv[i + 1], NULL, 10);
+        else if (strcmp(argv[i], "-t") == 0)
+            patience = g_ascii_strtod(argv[i + 1], NULL);
     }
-    if (!by_hand)
+    if (!by_hand) {
         g_test_add_func("/extremes/found", test_found);
+        g_test_add_func("/extremes/endless", test_endless);
+    }
     g_test_add_func("/extremes/points", test_points);
     return g_test_run();
 }

@@ -381,12 +381,12 @@ static void assert_inflates(const uint8_t *packed, gsize n_packed, const uint8_t
 }
 
 /* What zlib makes of compressed bytes is what they were; noise is said not to fit. */
-static void test_deflate(void)
+static void test_deflate(gconstpointer match)
 {
     static const uint32_t size[] = {1, 2, 3, 31, 257, 258, 259, 1000, 32767, 32768, 32769, 65535, 65536, 70001, 400000, 1500000};
     enum { MOST = 1500000 };
     uint8_t *in = g_malloc(MOST), *out = g_malloc(2 * MOST);
-    Deflate *d = deflate_new();
+    Deflate *d = deflate_new(GPOINTER_TO_INT(match));
     for (int kind = 0; kind < 4; kind++) {
         fill_bytes(in, MOST, kind);
         for (gsize i = 0; i < G_N_ELEMENTS(size); i++) {
@@ -407,12 +407,12 @@ static void test_deflate(void)
 }
 
 /* The same given in pieces and taken in pieces, of all sizes. */
-static void test_deflate_pieces(void)
+static void test_deflate_pieces(gconstpointer match)
 {
     static const uint32_t given[] = {1, 100, 4097, 65536, 300000}, taken[] = {1, 7, 1000, 65536};
     enum { MOST = 300000 };
     uint8_t *in = g_malloc(MOST), *out = g_malloc(2 * MOST);
-    Deflate *d = deflate_new();
+    Deflate *d = deflate_new(GPOINTER_TO_INT(match));
     for (int kind = 0; kind < 4; kind++)
         for (int g = 0; g < 5; g++)
             for (int t = 0; t < 4; t++) {
@@ -437,11 +437,11 @@ static void test_deflate_pieces(void)
 }
 
 /* Matches of every length up to where a second one is needed and a third, and every distance about where symbols and the window change. */
-static void test_deflate_matches(void)
+static void test_deflate_matches(gconstpointer match)
 {
     enum { MOST = 200000 };
     uint8_t *in = g_malloc(MOST), *out = g_malloc(2 * MOST);
-    Deflate *d = deflate_new();
+    Deflate *d = deflate_new(GPOINTER_TO_INT(match));
     for (uint32_t at = 0, i = 0; at < MOST; i++) { /* runs of one byte, of all lengths, between which there is no pattern */
         uint32_t run = MIN(i % 800, MOST - at);
         memset(in + at, (int)(i * 2654435761u >> 24), run);
@@ -605,9 +605,12 @@ int main(int argc, char **argv)
     g_test_add_func("/image/half", test_half);
     g_test_add_func("/image/exr/pixels", test_exr);
     g_test_add_func("/image/exr/labels", test_exr_labels);
-    g_test_add_func("/image/deflate/whole", test_deflate);
-    g_test_add_func("/image/deflate/pieces", test_deflate_pieces);
-    g_test_add_func("/image/deflate/matches", test_deflate_matches);
+    g_test_add_data_func("/image/deflate/whole", GINT_TO_POINTER(DEFLATE_STRINGS), test_deflate);
+    g_test_add_data_func("/image/deflate/whole/runs", GINT_TO_POINTER(DEFLATE_RUNS), test_deflate);
+    g_test_add_data_func("/image/deflate/pieces", GINT_TO_POINTER(DEFLATE_STRINGS), test_deflate_pieces);
+    g_test_add_data_func("/image/deflate/pieces/runs", GINT_TO_POINTER(DEFLATE_RUNS), test_deflate_pieces);
+    g_test_add_data_func("/image/deflate/matches", GINT_TO_POINTER(DEFLATE_STRINGS), test_deflate_matches);
+    g_test_add_data_func("/image/deflate/matches/runs", GINT_TO_POINTER(DEFLATE_RUNS), test_deflate_matches);
     g_test_add_func("/image/large", test_large);
     g_test_add_func("/image/same-bytes", test_same_bytes);
     g_test_add_func("/image/banded", test_banded);
