@@ -515,7 +515,7 @@ def test_stop_while_writing():
         _, err = process.communicate(timeout=TIMEOUT / 2)
     finally:
         process.kill()
-    if process.returncode == 0:
+    if b" files, " in err: # told when all is written; what comes after that may still end the process by its default
         raise Skip("it had written all before it could be stopped")
     same(process.returncode, 143, f"exit status (stderr {err!r})")
     same(os.listdir("work"), [], "left over")
