@@ -2,7 +2,8 @@
 # What the tests run through: lines and branches of src, by file, those with the most lines missed first.
 # Usage: coverage.sh FOLDER [TEST…]     builds in FOLDER, runs the tests named (default: unit tests, fuzz replays, the command), and leaves pages
 # in FOLDER/pages for a look at what is missed: FOLDER/pages/index.html. Needs lcov, from Debian.
-# The tests of failing memory and disks (faults) end most of their runs by force, which counts nothing.
+# What ends by force counts nothing: runs under failing memory and disks (faults), and the points of test_extremes. Its own files make the command's test
+# of files that may not grow fail.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:?FOLDER}

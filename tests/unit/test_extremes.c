@@ -377,6 +377,17 @@ static void shape_leaf(const VenLeaf *leaf, const char *folder)
     check_surface(shape->bent.blade);
     if (shape->bent.veins)
         check_surface(shape->bent.veins);
+    for (uint32_t i = 0; i < ven_shape_vertices(shape); i++) {
+        double at[3], normal[3];
+        ven_shape_vertex(shape, i, at, normal);
+        require(isfinite(at[0]) && isfinite(at[1]) && isfinite(at[2]));
+        require(fabs(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2] - 1.0) < 1e-9);
+    }
+    for (uint32_t t = 0; t < ven_shape_triangles(shape); t++) {
+        uint32_t v[3];
+        ven_shape_triangle(shape, t, v);
+        require(v[0] < ven_shape_vertices(shape) && v[1] < ven_shape_vertices(shape) && v[2] < ven_shape_vertices(shape) && v[0] != v[1] && v[1] != v[2]);
+    }
     if (ven_shape_write(shape, folder, "shape", &error))
         check_files(folder);
     if (error)
