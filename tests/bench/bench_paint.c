@@ -2,10 +2,10 @@
  * files hold, as the library has it; whole sets on one thread and two; leaves a minute. Times are processor time unless they are called wall time.
  * usage: bench_paint PARAMS [--quick | --large] [--compression]
  *
- * What bounds it: compression takes most of the writing, and of a leaf of few veins most of all. Of a leaf of many veins (poplar, 10^6 edges) painting
- * takes three quarters: the exact union of strokes in each pixel, where it is cutting of convex polygons a few points at a time; the areoles,
- * which walk through the net in no order that caches like; the bulges, pixel by pixel for each stroke near it; the nearest vein. Strokes and areoles are made by
- * one thread each.
+ * What bounds it: compression takes most of the writing, and of a leaf of few veins most of all: half of a set at 8192. Of a leaf of many veins (poplar, 10^6
+ * edges) painting takes three fifths at 4096, most of it the exact union of strokes in each pixel, where it is cutting of convex polygons a few points at a
+ * time; then the bulges, pixel by pixel for each stroke near it, the nearest vein, and the areoles. Strokes and areoles are made by one thread each, side by
+ * side.
  *
  * Compression (kill-distance.ini, 2048 pixels, 17 maps, zlib 1.2.13, s of processor time and MB; --compression prints it map by map). PNG, the rows behind one
  * filter for all: with runs `distance` alone grows, by an eighth, and vein_id by a tenth.
