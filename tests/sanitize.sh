@@ -11,6 +11,7 @@ source=$1 folder=$2 few='' all=''
 number=0 bad=0
 export G_SLICE=always-malloc UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 ASAN_OPTIONS=detect_stack_use_after_return=1 TSAN_OPTIONS=halt_on_error=1
 unset LD_PRELOAD
+mkdir -p "$folder"
 # What fontconfig keeps of its own until the program ends.
 supp=$folder/sanitize.supp
 echo 'leak:libfontconfig' >"$supp"

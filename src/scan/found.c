@@ -11,11 +11,14 @@ static const double primary_start = 0.08;    /* of the length: veins that leave 
 static const double primary_length = 0.22;   /* … are at least so long are primaries */
 static const double primary_share = 0.4;     /* … with as much contrast times width, compared with the midvein, */
 static const double least_contrast = 2.0, most_contrast = 8.0;  /* over noise, of what may be a vein: at sensitivities 1 and 0 */
+static const double long_share = 0.5;        /* of that contrast is enough in veins that run side by side through most of the leaf */
 static const double weed_share = 0.33;       /* of the upper quartile of contrast times width in its order: the least prominent vein */
 static const double least_gain = 0.022;      /* evidence times length that makes a vein, of the leaf's length */
 static const double clear_contrast = 8.0;     /* over noise, the median of secondaries that stand in combs: shorter ones are looked for, … */
 static const double short_gain = 0.3;        /* … of so much of that evidence, … */
 static const double kin_contrast = 0.6;      /* … and with so much of that contrast */
+static const double widens = 1.6;            /* mean width farther on over that so far: no vein does that, … */
+static const uint32_t least_run = 16;        /* … seen over so many points to both sides */
 static const uint32_t least_kin = 60, most_dismissed = 60;
 enum { MOST_VEINS = 4000 };                  /* with those dismissed; a palmate leaf of many secondaries has a thousand */
 
@@ -83,17 +86,64 @@ static void settle(const Search *s, FoundVein *v)
     v->ghost = v->order > s->orders || v->contrast < s->asked_contrast || v->contrast < most_contrast - (most_contrast - least_contrast) * s->def->sensitivity;
 }
 
-static void add(Search *s, FoundVein v)
+/* Veins taper. One that goes on far wider has come upon something else, a petiole that lies over the blade: the point where, n when there is none. */
+static uint32_t widening(const FoundVein *v)
+{
+    double all = 0.0, before = 0.0, most = widens, ratio;
+    uint32_t at = v->n;
+    for (uint32_t i = 0; i < v->n; i++)
+        all += v->width[i];
+    for (uint32_t i = 0; i + least_run < v->n; i++) {
+        if (i >= least_run && (ratio = (all - before) / (v->n - i) * i / before) > most) {
+            most = ratio;
+            at = i;
+        }
+        before += v->width[i];
+    }
+    return at;
+}
+
+/* Takes up a vein that was traced. */
+static void take_up(Search *s, FoundVein v)
 {
     uint32_t id = s->vein->len;
-    found_trace(&s->leaf, s->ridges, &v);
-    settle(s, &v);
     g_array_append_val(s->vein, v);
     double band = band_length * s->leaf.length + band_widths * mean_width(&v);
     uint32_t near = 0; /* what leaves here may be a primary */
     while (!v.ghost && v.order == 1 && near < v.n_pixels && vec_dist(pixel_at(s, v.pixel[near]), s->base) < primary_start * s->leaf.length)
         near++;
     found_paths_add(s->paths, id, v.pixel, v.n_pixels, band, !v.ghost && v.order < s->orders ? v.n_pixels : near, near);
+}
+
+/* Cuts a primary where it widens; *rest is what it went on along. */
+static bool cut_wide(const Search *s, FoundVein *v, FoundVein *rest)
+{
+    uint32_t at = v->ghost || v->order != 1 || s->vein->len == 0 ? v->n : widening(v);
+    uint32_t keep = (uint32_t)((uint64_t)at * v->n_pixels / v->n);
+    if (at == v->n || keep < 4 || v->n_pixels - keep < 4)
+        return false;
+    *rest = (FoundVein){.parent = s->vein->len, .order = (uint8_t)(s->orders + 1), .ghost = true, .n_pixels = v->n_pixels - keep};
+    rest->pixel = g_memdup2(v->pixel + keep, rest->n_pixels * sizeof *rest->pixel);
+    v->n_pixels = keep;
+    g_free(v->p);
+    g_free(v->width);
+    v->contrast = 0.0;
+    found_trace(&s->leaf, s->ridges, v);
+    found_trace(&s->leaf, s->ridges, rest);
+    return true;
+}
+
+/* Whether it is a vein. What was cut off keeps others off its place. */
+static bool add(Search *s, FoundVein v)
+{
+    FoundVein rest;
+    found_trace(&s->leaf, s->ridges, &v);
+    settle(s, &v);
+    bool cut = cut_wide(s, &v, &rest);
+    take_up(s, v);
+    if (cut)
+        take_up(s, rest);
+    return !v.ghost;
 }
 
 /* From the base as far as there is evidence. */
@@ -126,8 +176,7 @@ static void find_others(Search *s, double least)
         v.pixel = found_paths_best(s->paths, least, &v.n_pixels, &v.parent, &v.gain);
         if (!v.pixel)
             return;
-        add(s, v);
-        dismissed = vein_at(s, s->vein->len - 1)->ghost ? dismissed + 1 : 0;
+        dismissed = add(s, v) ? 0 : dismissed + 1;
     }
 }
 
@@ -195,6 +244,29 @@ static Drawing *draw(const Search *s)
     return d;
 }
 
+/* Widths and contrasts of veins that are there at once; what isn't clear is none. */
+static void measure_all(Search *s)
+{
+    for (uint32_t k = 0; k < s->vein->len; k++) {
+        FoundVein *v = vein_at(s, k);
+        found_trace(&s->leaf, s->ridges, v);
+        v->ghost = v->contrast < long_share * (most_contrast - (most_contrast - least_contrast) * s->def->sensitivity);
+    }
+}
+
+/* The midvein and what leaves it, and what leaves that. */
+static void find_branching(Search *s, double threshold)
+{
+    double least = least_gain * s->leaf.length;
+    s->paths = found_paths_new(&s->leaf, s->ridges, threshold, s->base);
+    if (find_midvein(s, 3.0 * least)) {
+        find_others(s, least);
+        find_short(s, least);
+    }
+    weed(s);
+    found_hub(&s->leaf, (FoundVein *)(void *)s->vein->data, s->vein->len, s->base);
+}
+
 Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error)
 {
     Search s = {.def = def, .orders = MAX(def->orders, 2)};
@@ -203,16 +275,13 @@ Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 t
     s.ridges = found_ridges_of(&s.leaf, def);
     s.base = to_working(&s, base);
     s.tip = to_working(&s, tip);
-    double threshold = 0.75 - 0.5 * def->sensitivity, least = least_gain * s.leaf.length;
-    s.paths = found_paths_new(&s.leaf, s.ridges, threshold, s.base);
+    double threshold = 0.75 - 0.5 * def->sensitivity;
     s.vein = g_array_new(FALSE, FALSE, sizeof(FoundVein));
     g_array_set_clear_func(s.vein, vein_clear);
-    if (find_midvein(&s, 3.0 * least)) {
-        find_others(&s, least);
-        find_short(&s, least);
-    }
-    weed(&s);
-    found_hub(&s.leaf, (FoundVein *)s.vein->data, s.vein->len, s.base);
+    if (found_parallel(&s.leaf, s.ridges, s.base, s.tip, threshold, s.vein))
+        measure_all(&s);
+    else
+        find_branching(&s, threshold);
     Drawing *d = draw(&s);
     g_array_free(s.vein, TRUE);
     found_paths_free(s.paths);

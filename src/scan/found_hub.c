@@ -7,9 +7,10 @@
 
 static const double near_end = 0.05, far_end = 0.11; /* of the length: the run of a primary, by distance from the base, that tells where it heads */
 static const double most_shift = 0.045;              /* of the length: farther from the base is no place where a petiole meets the blade */
-static const double most_miss = 0.025;               /* of the length: a primary that misses the node by more begins elsewhere */
+static const double most_miss = 0.035;               /* of the length: a primary that misses the node by more begins elsewhere */
 static const double base_weight = 1.5;                 /* of the base, in lines: they meet in a short bar rather than in a point */
 static const double drawn_anew = 0.045;              /* of the length: around the node */
+static const double slack = 0.008;                   /* of the length: less than what drawn veins may stick out (sim/drawing.h) */
 static const double spacing = 3.0;                   /* of points, working pixels */
 
 typedef struct {
@@ -56,9 +57,15 @@ static Vec2 meeting(const Line *line, uint32_t n, Vec2 base)
     return vec_add(base, vec2((yy * x - xy * y) / det, (xx * y - xy * x) / det));
 }
 
+/* In the blade, or so near to it that it is: the pale pad in which veins meet is often bitten into by the outline. */
 static bool on_blade(const FoundLeaf *l, Vec2 q)
 {
-    return q.x >= 0.0 && q.y >= 0.0 && q.x < l->width && q.y < l->height && l->inside[(gsize)q.y * l->width + (gsize)q.x];
+    int64_t r = (int64_t)floor(slack * l->length), x = (int64_t)floor(q.x), y = (int64_t)floor(q.y), w = l->width, h = l->height;
+    for (int64_t j = MAX(0, y - r); j <= MIN(h - 1, y + r); j++)
+        for (int64_t i = MAX(0, x - r); i <= MIN(w - 1, x + r); i++)
+            if ((i - x) * (i - x) + (j - y) * (j - y) <= r * r && l->inside[j * w + i])
+                return true;
+    return false;
 }
 
 static bool run_on_blade(const FoundLeaf *l, Vec2 a, Vec2 b)

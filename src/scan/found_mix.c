@@ -9,6 +9,7 @@ static const double ground_share = 0.7;    /* of the blade, by contrast: surely 
 static const double vein_half = 0.002;     /* half the width looked for, of the leaf's length */
 static const double vein_reach = 0.012;    /* sigma along, of the length */
 static const double noise_quantile = 0.85; /* of lines of the other polarity */
+static const double least_noise = 0.5 / 255;   /* of the whole scale: of a mix in which colours nearly cancel rounding is left */
 
 /* Means of blocks. */
 static GreyImage *shrunk(const GreyImage *g, uint32_t w, uint32_t h)
@@ -47,13 +48,13 @@ static GreyImage *mixed(const FoundLeaf *l, const double mix[3])
 /* Mean of the greatest contrasts over the noise: what `f` shows of veins of its polarity. */
 static double clearness(const FoundLeaf *l, const GreyImage *best, const GreyImage *other)
 {
-    double from = found_quantile(l, best, 1.0 - vein_share), noise = found_quantile(l, other, noise_quantile), sum = 0.0, count = 0.0;
+    double from = found_quantile(l, best, 1.0 - vein_share), noise = MAX(found_quantile(l, other, noise_quantile), least_noise), sum = 0.0, count = 0.0;
     for (gsize i = 0; i < (gsize)l->width * l->height; i++)
         if (l->deep[i] && (double)best->px[i] > from) {
             sum += (double)best->px[i];
             count += 1.0;
         }
-    return count > 0.0 && noise > 0.0 ? sum / count / noise : 0.0;
+    return count > 0.0 ? sum / count / noise : 0.0;
 }
 
 /* Solves the symmetric positive a x = b by elimination. */

@@ -79,6 +79,10 @@ uint32_t *found_paths_best(FoundPaths *p, double least, uint32_t *n, uint32_t *i
 /* Smooth points at even steps along the ridge, widths measured. */
 void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v);
 
+/* Appends the primaries of a parallel-veined leaf, from base to tip, their pixels only; false, and nothing appended, when the leaf is none. Threshold: strength
+ * that makes a ridge. */
+bool found_parallel(const FoundLeaf *l, const FoundRidges *r, Vec2 base, Vec2 tip, double threshold, GArray *vein);
+
 /* Primaries that run together at the base begin at one node on the midvein, which is the first of the veins and begins at the base itself. */
 void found_hub(const FoundLeaf *l, FoundVein *vein, uint32_t n, Vec2 base);
 

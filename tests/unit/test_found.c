@@ -289,6 +289,84 @@ static void test_palmate(void)
     polygon_free(outline);
 }
 
+/* A petiole that lies over the blade where a primary runs under it: the primary is found as far as it shows, the petiole is no vein. */
+static void test_petiole(void)
+{
+    Polygon *outline = ellipse();
+    Drawing *truth = drawing_new();
+    Vec2 under = vec2(420, 480);
+    add_line(truth, base_point, vec2(985, 350), 0.0, 9.0, 1);
+    add_line(truth, base_point, under, 0.0, 8.0, 1);
+    add_line(truth, base_point, vec2(720, 150), 0.0, 8.0, 1);
+    double *cover = covered(truth, 0.0);
+    Vec2 p[2] = {under, vec2(690, 580)};
+    double w[2] = {15.0, 15.0};
+    paint_vein(cover, &(DrawnVein){.point = p, .width = w, .n = 2}, 0.9);
+    Scan *s = painted(outline, cover, 3, 40, 6.0);
+    FoundDef def = found_def_default();
+    Drawing *d = found(s, outline, &def);
+    FoundScore score = found_score(d, truth, 0.006 * 900);
+    g_test_message("petiole: %u primaries of %u, precision %.3f, recall %.3f", count_order(d, 1), d->n, score.precision, score.recall);
+    g_assert_cmpuint(count_order(d, 1), ==, 3);
+    g_assert_cmpfloat(score.precision, >, 0.95);
+    g_assert_cmpfloat(score.recall, >, 0.95);
+    drawing_free(d);
+    drawing_free(truth);
+    scan_free(s);
+    g_free(cover);
+    polygon_free(outline);
+}
+
+/* Lines side by side: along a strip, or from end to end of a lance, where some leave the middle one late. Each is found whole, by its order. */
+static void check_parallel(uint32_t k, double contrast, double noise)
+{
+    static const Vec2 strip[] = {{100, 290}, {1000, 290}, {1000, 410}, {100, 410}};
+    Vec2 lance[100];
+    for (uint32_t i = 0; i < 100; i++) {
+        double t = i < 50 ? i / 50.0 : (100 - i) / 50.0;
+        lance[i] = vec2(100 + 900 * t, 350 + (i < 50 ? -1 : 1) * 4.0 * 150 * t * (1.0 - t));
+    }
+    Polygon *outline = k == 0 ? polygon_new(strip, 4) : polygon_new(lance, 100);
+    Drawing *truth = drawing_new();
+    add_line(truth, base_point, vec2(985, 350), 0.0, 5.0, 1);
+    for (int side = -1; side <= 1; side += 2)
+        for (int i = 1; i <= 3; i++) {
+            if (k == 0)
+                add_line(truth, vec2(100, 350 + side * 15 * i), vec2(992, 350 + side * 15 * i), 0.0, 4.0, 1);
+            else if (i < 3)
+                add_line(truth, base_point, vec2(960, 350), side * 0.053 * i, 4.0, 1);
+            else
+                add_line(truth, vec2(300, 350), vec2(700, 350 + side * 32), 0.0, 4.0, 2);
+        }
+    double *cover = covered(truth, 0.0);
+    Scan *s = painted(outline, cover, 3, contrast, noise);
+    FoundDef def = found_def_default();
+    Drawing *d = found(s, outline, &def);
+    FoundScore score = found_score(d, truth, 0.006 * 900);
+    g_test_message("%s, contrast %g, noise %g: %u primaries, %u secondaries, precision %.3f, recall %.3f", k ? "lance" : "strip", contrast, noise,
+                   count_order(d, 1), count_order(d, 2), score.precision, score.recall);
+    g_assert_cmpuint(count_order(d, 1), ==, k == 0 ? 7 : 5);
+    g_assert_cmpuint(count_order(d, 2), ==, k == 0 ? 0 : 2);
+    g_assert_cmpfloat(score.precision, >, 0.97);
+    g_assert_cmpfloat(score.recall, >, 0.9);
+    for (uint32_t i = 0; i < d->n; i++)
+        g_assert_cmpfloat(d->vein[i].point[0].x, <, d->vein[i].point[d->vein[i].n - 1].x); /* from the base on */
+    drawing_free(d);
+    drawing_free(truth);
+    scan_free(s);
+    g_free(cover);
+    polygon_free(outline);
+}
+
+static void test_parallel(void)
+{
+    for (uint32_t k = 0; k < 2; k++) {
+        check_parallel(k, 45, 4.0);
+        check_parallel(k, -35, 6.0);
+        check_parallel(k, 30, 0.0);
+    }
+}
+
 /* A midvein and n secondaries a side, which grow shorter towards base and tip with the blade. */
 static Drawing *comb(uint32_t n)
 {
@@ -562,6 +640,7 @@ static void test_grape(void)
     g_assert_cmpfloat(score.precision, >, 0.83);
     g_assert_cmpfloat(score.recall, >, 0.91);
     g_assert_cmpuint(count_order(d, 1), ==, 5);
+    check_node(d, 1.0);
     for (uint32_t k = 0; k < d->n; k++)
         for (uint32_t i = 0; i < d->vein[k].n; i++) {
             Vec2 q = d->vein[k].point[i];
@@ -582,7 +661,7 @@ static void test_real(void)
     static const struct {
         const char *name;
         uint32_t primaries, least, most;
-    } leaf[] = {{"grape_301.jpg", 5, 18, 30}, {"zelkova.jpg", 1, 20, 26}};
+    } leaf[] = {{"grape_301.jpg", 5, 18, 30}, {"grape_303.jpg", 5, 18, 30}, {"zelkova.jpg", 1, 20, 26}};
     bool any = false;
     for (uint32_t k = 0; k < G_N_ELEMENTS(leaf); k++) {
         Drawing *d = found_in(leaf[k].name);
@@ -592,6 +671,8 @@ static void test_real(void)
         g_assert_cmpuint(count_order(d, 1), ==, leaf[k].primaries);
         g_assert_cmpuint(count_order(d, 2), >=, leaf[k].least);
         g_assert_cmpuint(count_order(d, 2), <=, leaf[k].most);
+        if (leaf[k].primaries > 1)
+            check_node(d, 1.0);
         drawing_free(d);
     }
     if (!any)
@@ -605,6 +686,8 @@ int main(int argc, char **argv)
     g_test_add_func("/found/position", test_position);
     g_test_add_func("/found/pinnate", test_pinnate);
     g_test_add_func("/found/palmate", test_palmate);
+    g_test_add_func("/found/petiole", test_petiole);
+    g_test_add_func("/found/parallel", test_parallel);
     g_test_add_func("/found/comb", test_comb);
     g_test_add_func("/found/blank", test_blank);
     g_test_add_func("/found/same-bytes", test_same_bytes);
