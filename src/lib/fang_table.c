@@ -22,7 +22,8 @@ static void add_found(GString *s, const FangProfile *f, uint32_t height)
     g_free(to);
 }
 
-static gboolean add_row(GString *s, const Scan *scan, const FangDef *def, GError **error)
+/* What one operator finds, or why it finds nothing, which *none keeps, too; false with an error that has nothing to do with the operator. */
+static gboolean add_row(GString *s, const Scan *scan, const FangDef *def, guint *found, GError **none, GError **error)
 {
     GError *why = NULL;
     char *name = operator_name(def->edges.op);
@@ -34,9 +35,11 @@ static gboolean add_row(GString *s, const Scan *scan, const FangDef *def, GError
     if (f) {
         add_found(s, f, scan->height);
         g_string_append_printf(s, " %6.2f\n", seconds);
+        ++*found;
     } else if (g_error_matches(why, SCAN_ERROR, SCAN_ERROR_NO_LEAF) || why->domain == EDGES_ERROR) {
         g_string_append_printf(s, " %s\n", why->message);
-        g_error_free(why);
+        g_clear_error(none);
+        *none = why;
     } else {
         g_propagate_error(error, why);
         return FALSE;
@@ -57,9 +60,16 @@ char *fang_table(const Params *p, const Scan *scan, GError **error)
         "pixels. s: seconds.\n\n"
         "operator  sigma       area       off   edges   gap        base         tip  points  curves    mean    most      s\n");
     gboolean ok = TRUE;
+    guint found = 0;
+    GError *none = NULL;
     for (EdgesOperator op = EDGES_ROBERTS; ok && op <= EDGES_CANNY; op++) {
         def.edges.op = op;
-        ok = add_row(s, scan, &def, error);
+        ok = add_row(s, scan, &def, &found, &none, error);
     }
+    if (ok && found == 0) { /* a table of nothing is no table */
+        g_propagate_error(error, g_steal_pointer(&none));
+        ok = FALSE;
+    }
+    g_clear_error(&none);
     return g_string_free(s, !ok);
 }

@@ -736,6 +736,13 @@ def test_capture_ways():
         nodes = [int(n) for n in row[3:]]
         same(nodes, sorted(nodes, reverse=True))
     same([int(row[3]) for row in rows], sorted((int(row[3]) for row in rows), reverse=True))
+    # Fang's operators side by side: about the same leaf, and curves close to its contour
+    table = run("capture", "leaf.png", "--table", "--method", "fang")
+    rows = [line.split() for line in table.out[table.out.index("operator  sigma"):].splitlines()[1:]]
+    same([row[0] for row in rows], ["roberts", "sobel", "prewitt", "laplacian", "canny"])
+    areas = [float(row[2]) for row in rows]
+    same(max(areas) < 1.05 * min(areas), True)
+    same([float(row[10]) < 1.0 for row in rows], [True] * 5) # mean deviation, pixels
 
 
 def test_capture_refuses():
@@ -750,6 +757,7 @@ def test_capture_refuses():
     for name, size, colour in (("one.png", 1, 0), ("black.png", 50, 0), ("white.png", 50, 255)):
         png(name, size, size, lambda x, y, c=colour: (c, c, c))
         check_refused(run("capture", name), 3, name, "no leaf")
+        check_refused(run("capture", name, "--table", "--method", "fang"), 3, name)
     check_refused(run("capture", "leaf.png", "--method", "magic"), 3, "--method magic", "contour or fang")
     check_refused(run("capture", "leaf.png", "--set", "scan.leaf=2"), 3, "leaf.png", "there is 1 in the image")
     write("nothing.svg", '<svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>')
