@@ -75,6 +75,11 @@ uint64_t batch_bytes(const BatchDef *def, uint64_t index)
     sweep_variant(def->sweep, index, &v);
     char *relative = row_folder(def->sweep, &v), *folder = g_build_filename(def->out, relative, NULL);
     uint64_t bytes = batch_folder_bytes(folder);
+    if (bytes == 0 && def->staging) {
+        char *made = g_build_filename(def->staging, v.name, NULL);
+        bytes = batch_folder_bytes(made);
+        g_free(made);
+    }
     g_free(relative);
     g_free(folder);
     sweep_variant_clear(&v);

@@ -32,7 +32,7 @@ typedef struct {
  * (a full disk), after which the rest was left, or of G_IO_ERROR_CANCELLED; variants whose parameters don't go together are no such error: they are rows. */
 gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state, gpointer user), gpointer user, BatchState *end, GError **error);
 
-/* What the files of a variant that is there take, bytes; 0 if it isn't. */
+/* What the files of a variant take that is there, or of one at hand those written so far, bytes; 0 if there are none. */
 uint64_t batch_bytes(const BatchDef *def, uint64_t index);
 
 /* Makes an error name files in their places, not in the hidden folder. */

@@ -162,18 +162,36 @@ static void put_veins(Sink *out, Painter *painter)
     plane_free(map);
 }
 
+/* A polygon has no holes in COCO, which takes several for their union: with holes the blade is its pixels, those that it covers by half or more. */
+static void put_torn_lamina(Sink *out, Painter *painter)
+{
+    Plane *map = painter_paint(painter, MAP_OPACITY);
+    for (gsize i = 0; i < (gsize)map->width * map->height; i++)
+        map->px[i] = map->px[i] >= 0.5f;
+    Region *region = regions_new(map, true);
+    if (region[1].area > 0)
+        put_region(out->text, map, &region[1], 0, LABEL_LAMINA);
+    g_free(region);
+    plane_free(map);
+}
+
 gboolean labels_write(const VenLeaf *leaf, const char *path, GError **error)
 {
     Frame frame = leaf_frame(leaf, leaf->net->margin->box);
     Sink *out = sink_open(path, error);
     if (!out)
         return FALSE;
-    put_lamina(out->text, leaf->net->margin, &frame);
+    gboolean torn = leaf->net->holes && leaf->net->holes->n > 0;
     Writer w;
     writer_init(&w, leaf, ".", "");
     Painter *painter = writer_painter(&w, &frame);
-    gboolean wanted[MAP_COUNT] = {[MAP_AREOLE] = TRUE, [MAP_VEIN_ORDER] = TRUE};
+    gboolean wanted[MAP_COUNT] = {[MAP_OPACITY] = torn, [MAP_AREOLE] = TRUE, [MAP_VEIN_ORDER] = TRUE};
     painter_expect(painter, wanted);
+    if (torn)
+        put_torn_lamina(out, painter);
+    else
+        put_lamina(out->text, leaf->net->margin, &frame);
+    sink_drain(out);
     put_areoles(out, painter);
     put_veins(out, painter);
     painter_free(painter);

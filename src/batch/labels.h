@@ -12,7 +12,7 @@ const char *label_category(int id);
 enum { LABEL_LEAST_AREOLE = 16 };
 
 /* Writes the annotations of the leaf's maps, one JSON object a line, without numbers of image and annotation: the lamina as a polygon, in pixels from the
- * top left corner, simplified within a quarter of a pixel; each areole run-length encoded, of the pixels that hold its number ("label") in the map of
+ * top left corner, simplified within a quarter of a pixel, or run-length encoded where the blade has holes, of the pixels it covers by half or more; each areole run-length encoded, of the pixels that hold its number ("label") in the map of
  * areoles; all veins as one, run-length encoded, of all pixels that have an order in the map of orders. None is without a pixel. */
 gboolean labels_write(const VenLeaf *leaf, const char *path, GError **error);
 

@@ -9,8 +9,6 @@
 #include "batch/sheet_private.h"
 #include "image/staged.h"
 
-enum { DEFAULT_CELL = 320, LEAST_CELL = 32, MOST_CELL = 2048 };
-
 /* "sheet.svg", "sheet-2.svg" …, in a folder or by itself. */
 static char *file_name(const char *out, uint64_t sheet, const char *ending)
 {
@@ -167,11 +165,10 @@ static void remove_rest(const char *out, uint64_t sheets)
 
 gboolean sheet_write(const Sweep *s, const char *out, const SheetDef *def, GError **error)
 {
-    uint32_t cell = def->cell ? CLAMP(def->cell, LEAST_CELL, MOST_CELL) : DEFAULT_CELL;
     char *own = g_path_get_basename(sweep_path(s));
     if (g_str_has_suffix(own, ".ini"))
         own[strlen(own) - 4] = '\0';
-    Sheet sheet = {.plan = sheet_plan_new(s, out, cell), .title = def->title ? def->title : own, .staging = def->staging, .watch = def->watch};
+    Sheet sheet = {.plan = sheet_plan_new(s, out, def), .title = def->title ? def->title : own, .staging = def->staging, .watch = def->watch};
     sheet_sizes(&sheet);
     gboolean ok = TRUE;
     for (; ok && sheet.sheet < sheet.plan->sheets; sheet.sheet++)

@@ -9,6 +9,7 @@ enum { SHEET_MOST_CELLS = 600 }; /* of one sheet; larger sweeps have several */
 
 typedef struct {
     uint32_t cell;     /* pixels of a cell's picture in the PNG, longer side */
+    gboolean specimen; /* pictures are of leaves in their colours, not of veins alone: colours and light are worth telling */
     const char *title; /* NULL: the sweep file's name */
     const char *staging; /* where files are made; NULL: beside their places */
     Watch watch;

@@ -6,7 +6,7 @@
 #include "batch/sheet_private.h"
 #include "geom/vec.h"
 
-enum { MOST_MEASURED = 600, WIDEST_CAPTION = 13, LEAST_WIDTH = 560 };
+enum { MOST_MEASURED = 600, WIDEST_CAPTION = 13, WIDEST_HEAD = 560 };
 
 static const SheetAxis *axis_from_end(const SheetPlan *p, guint i) { return p->axis->pdata[p->axis->len - i]; }
 
@@ -15,6 +15,29 @@ static const SheetItem *item_at(const GArray *items, guint i) { return &g_array_
 static double fact_width(const SheetSizes *z, const SheetFact *f, bool labelled)
 {
     return label_width(f->value) * z->value + (labelled && *f->label ? (label_width(f->label) + 0.45) * z->label : 0.0) + (f->colour >= 0 ? 1.2 * z->value : 0.0);
+}
+
+/* How many there are and what they have in common. */
+static char *describe(const SheetPlan *p)
+{
+    uint64_t count = sweep_count(p->s);
+    char *file = g_path_get_basename(sweep_params_path(p->s));
+    GString *s = g_string_new(NULL);
+    g_string_append_printf(s, "%" G_GUINT64_FORMAT " variant%s of %s", count, count == 1 ? "" : "s", file);
+    bool first = true;
+    for (uint32_t k = 0; k < sweep_keys(p->s); k++) {
+        SweepKey key = sweep_key(p->s, k);
+        if (key.varies || key.levels != 1 || (key.id >= 0 && param_info((ParamId)key.id)->section == param_info(PARAM_LEAF_TITLE)->section))
+            continue;
+        char *name = label_key(p->s, k), *text = sweep_level(p->s, k, 0), *value = label_value(p->s, &key, text, 7);
+        g_string_append_printf(s, "%s%s %s%s%s", first ? count == 1 ? ", with " : ", all with " : ", ", name, value, *label_unit(&key) ? " " : "", label_unit(&key));
+        first = false;
+        g_free(name);
+        g_free(text);
+        g_free(value);
+    }
+    g_free(file);
+    return g_string_free(s, FALSE);
 }
 
 /* Room for the heads of rows, and for the name above them. */
@@ -62,19 +85,38 @@ static int measure_cell(const SheetPlan *p, const SheetSizes *z)
     return MAX((int)p->picture_width, (int)MIN(widest + 1.0, (double)WIDEST_CAPTION * z->value));
 }
 
+/* What the heads above the cells need not to be cut, within reason. */
+static int measure_head(const Sheet *sheet)
+{
+    const SheetPlan *p = sheet->plan;
+    const SheetSizes *z = &sheet->size;
+    double widest = label_width(sheet->title) * z->title * 1.12 + (p->sheets > 1 ? 8.0 : 1.5) * z->axis; /* "10 of 12" beside it */
+    for (guint i = 0; i < p->told->len; i++) {
+        char *name = sheet_item_label(p, item_at(p->told, i));
+        widest = MAX(widest, label_width(name) * z->axis * 1.12);
+        g_free(name);
+    }
+    char *note = describe(p);
+    widest = MAX(widest, label_width(note) * z->head);
+    g_free(note);
+    return (int)MIN(widest + 1.0, WIDEST_HEAD);
+}
+
 void sheet_sizes(Sheet *sheet)
 {
     const SheetPlan *p = sheet->plan;
     uint32_t cell = MAX(p->picture_width, p->picture_height);
     double u = MAX(cell / 320.0, 0.6);
     SheetSizes *z = &sheet->size;
-    *z = (SheetSizes){.margin = (int)(36 * u), .gap_x = (int)(22 * u), .gap_y = (int)(20 * u), .value = (int)(17 * u), .label = (int)(14 * u), .note = (int)(13 * u)};
+    *z = (SheetSizes){.margin = (int)(36 * u), .gap_x = (int)(22 * u), .gap_y = (int)(20 * u), .value = (int)(17 * u), .label = MAX((int)(14 * u), 9), .note = MAX((int)(13 * u), 9)};
     z->axis = z->value;
     z->plain = p->told->len == 1 && !p->numbered;
     z->left = measure_left(p, z, cell);
     z->cell = measure_cell(p, z);
     int columns = (int)p->columns, content = z->left + columns * z->cell + (columns - 1) * z->gap_x;
-    z->width = MAX(content, LEAST_WIDTH) + 2 * z->margin;
+    z->title = (int)(26 * u);
+    z->head = z->note;
+    z->width = MAX(content, measure_head(sheet)) + 2 * z->margin;
     /* Of a large sheet, seen as a whole, the title is still read. */
     double large = MIN(MAX(sqrt(z->width / (1700.0 * u)), 1.0), 3.0);
     z->title = (int)(26 * u * large);
@@ -160,30 +202,6 @@ static uint32_t count_varying(const SheetPlan *p)
     return n;
 }
 
-/* How many there are and what they have in common. */
-static char *describe(const Sheet *sheet)
-{
-    const SheetPlan *p = sheet->plan;
-    uint64_t count = sweep_count(p->s);
-    char *file = g_path_get_basename(sweep_params_path(p->s));
-    GString *s = g_string_new(NULL);
-    g_string_append_printf(s, "%" G_GUINT64_FORMAT " variant%s of %s", count, count == 1 ? "" : "s", file);
-    bool first = true;
-    for (uint32_t k = 0; k < sweep_keys(p->s); k++) {
-        SweepKey key = sweep_key(p->s, k);
-        if (key.varies || key.levels != 1 || (key.id >= 0 && param_info((ParamId)key.id)->section == param_info(PARAM_LEAF_TITLE)->section))
-            continue;
-        char *name = label_key(p->s, k), *text = sweep_level(p->s, k, 0), *value = label_value(p->s, &key, text, 7);
-        g_string_append_printf(s, "%s%s %s%s%s", first ? count == 1 ? ", with " : ", all with " : ", ", name, value, *label_unit(&key) ? " " : "", label_unit(&key));
-        first = false;
-        g_free(name);
-        g_free(text);
-        g_free(value);
-    }
-    g_free(file);
-    return g_string_free(s, FALSE);
-}
-
 static void put_title(const Sheet *sheet, int y, GString *svg)
 {
     const SheetSizes *z = &sheet->size;
@@ -205,7 +223,7 @@ void sheet_draw_head(const Sheet *sheet, SheetBand *band)
     const SheetSizes *z = &sheet->size;
     int y = z->margin * 3 / 4 + z->title, room = z->width - 2 * z->margin;
     put_title(sheet, y, band->svg);
-    char *note = describe(sheet), *fitted = label_fit(note, (double)room / z->head);
+    char *note = describe(p), *fitted = label_fit(note, (double)room / z->head);
     y += z->head + z->title / 3;
     sheet_text(band->svg, z->margin, y, "h", AT_START, fitted);
     g_free(note);

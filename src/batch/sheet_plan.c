@@ -6,36 +6,35 @@
 #include "geom/vec.h"
 #include "sweep/private.h"
 
-enum { MOST_TOLD = 3, MOST_COLUMNS = 24, MOST_LINES = 40, MOST_IN_ROW = 6, MOST_LETTERS = 26, LEVEL_DIGITS = 7, DRAWN_DIGITS = 4, MOST_COMPARED = 1000 };
+enum { MOST_COLUMNS = 24, MOST_LINES = 40, MOST_IN_ROW = 6, MOST_LETTERS = 26, LEVEL_DIGITS = 7, DRAWN_DIGITS = 4, MOST_COMPARED = 1000 };
+enum { DEFAULT_CELL = 320, LEAST_CELL = 32, MOST_CELL = 2048 };
 
 /* ---- items ---- */
 
 static const SweepAxis *axis_at(const Sweep *s, uint32_t i) { return &g_array_index(s->axis, SweepAxis, i); }
 
 /* What an axis tells: its names if the user gave some, else the keys that vary. */
-static void add_items(const Sweep *s, uint32_t axis, GArray *items, guint most)
+static void add_items(const Sweep *s, uint32_t axis, GArray *items)
 {
-    if (axis_at(s, axis)->named && items->len < most) {
+    if (axis_at(s, axis)->named) {
         g_array_append_val(items, ((SheetItem){NAME_ITEM, axis}));
         return;
     }
-    for (int points = 0; points < 2; points++) { /* lists of points say little: last */
-        for (uint32_t k = 0; k < sweep_keys(s); k++) {
-            SweepKey key = sweep_key(s, k);
-            bool is_points = key.id >= 0 && param_info((ParamId)key.id)->type == TYPE_POINTS;
-            if (key.axis == axis && key.varies && axis_at(s, axis)->kind != AXIS_EACH && items->len < most && is_points == (points == 1))
-                g_array_append_val(items, ((SheetItem){k, axis}));
-        }
+    for (uint32_t k = 0; k < sweep_keys(s); k++) {
+        SweepKey key = sweep_key(s, k);
+        if (key.axis == axis && key.varies && axis_at(s, axis)->kind != AXIS_EACH)
+            g_array_append_val(items, ((SheetItem){k, axis}));
     }
 }
 
-static SheetAxis *axis_new(const Sweep *s, uint32_t axis)
+static SheetAxis *axis_new(const SheetPlan *p, uint32_t axis)
 {
     SheetAxis *a = g_new0(SheetAxis, 1);
     a->axis = axis;
-    a->levels = axis_at(s, axis)->levels;
+    a->levels = axis_at(p->s, axis)->levels;
     a->item = g_array_new(FALSE, FALSE, sizeof(SheetItem));
-    add_items(s, axis, a->item, MOST_TOLD);
+    add_items(p->s, axis, a->item);
+    sheet_choose(p, a->item);
     return a;
 }
 
@@ -123,10 +122,11 @@ static void plan_grid(SheetPlan *p)
     for (uint32_t i = 0; i < p->s->axis->len; i++) {
         const SweepAxis *axis = axis_at(p->s, i);
         if (axis->levels > 1 && !axis->drawn)
-            g_ptr_array_add(p->axis, axis_new(p->s, i));
+            g_ptr_array_add(p->axis, axis_new(p, i));
         else if (axis->drawn && sweep_axis_varies(axis))
-            add_items(p->s, i, p->told, MOST_TOLD);
+            add_items(p->s, i, p->told);
     }
+    sheet_choose(p, p->told);
     guint n = p->axis->len;
     const SheetAxis *last = n ? p->axis->pdata[n - 1] : NULL;
     p->matrix = n >= 2 && last->levels <= MOST_COLUMNS;
@@ -148,7 +148,8 @@ static void plan_flow(SheetPlan *p)
     p->numbered = p->s->mode == SWEEP_SAMPLE;
     for (uint32_t i = 0; i < p->s->axis->len; i++)
         if (sweep_axis_varies(axis_at(p->s, i)) || axis_at(p->s, i)->named)
-            add_items(p->s, i, p->told, MOST_TOLD);
+            add_items(p->s, i, p->told);
+    sheet_choose(p, p->told);
 }
 
 /* Columns for n cells: about three to two as a whole, preferring those that leave few places of the last line empty. */
@@ -191,11 +192,13 @@ static void measure_pictures(SheetPlan *p, uint32_t cell)
     p->picture_height = p->picture_height ? MAX(p->picture_height, cell / 3) : cell;
 }
 
-SheetPlan *sheet_plan_new(const Sweep *s, const char *out, uint32_t cell)
+SheetPlan *sheet_plan_new(const Sweep *s, const char *out, const SheetDef *def)
 {
     SheetPlan *p = g_new0(SheetPlan, 1);
+    uint32_t cell = def->cell ? CLAMP(def->cell, LEAST_CELL, MOST_CELL) : DEFAULT_CELL;
     p->s = s;
     p->out = out;
+    p->specimen = def->specimen;
     p->axis = g_ptr_array_new_with_free_func(axis_free);
     p->told = g_array_new(FALSE, FALSE, sizeof(SheetItem));
     p->digits = g_new(int, sweep_keys(s) + 1);

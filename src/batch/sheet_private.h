@@ -31,6 +31,7 @@ typedef struct {
     GArray *told;    /* SheetItem: by captions */
     int *digits;     /* by key of the sweep: of numbers that are shown */
     bool matrix;
+    bool specimen;   /* the pictures show colours */
     bool numbered;   /* captions tell the variant's number */
     bool lettered;   /* a, b, c … */
     uint32_t columns;
@@ -40,9 +41,13 @@ typedef struct {
     uint32_t picture_width, picture_height; /* of a cell, pixels */
 } SheetPlan;
 
-/* Lays out the sweep with pictures of `cell` pixels on their longer side. */
-SheetPlan *sheet_plan_new(const Sweep *s, const char *out, uint32_t cell);
+SheetPlan *sheet_plan_new(const Sweep *s, const char *out, const SheetDef *def);
 void sheet_plan_free(SheetPlan *p);
+
+/* Keeps, of items that are more than so many, those whose values differ most between leaves, in their order (sheet_choose.c): the mean difference of two
+ * leaves, of numbers as part of the largest, of words whether they differ. Ties: the first; and none that follows from another. */
+enum { SHEET_MOST_TOLD = 3 };
+void sheet_choose(const SheetPlan *p, GArray *items);
 
 /* A line's group, its first variant and how many it has. */
 typedef struct {

@@ -288,7 +288,7 @@ static int grow_all(Sweeping *w, BatchState *end)
 static int collect(Sweeping *w, BatchCount *count)
 {
     GError *error = NULL;
-    const SheetDef sheet = {.cell = (uint32_t)w->cell, .staging = w->def.staging, .watch = w->def.watch};
+    const SheetDef sheet = {.cell = (uint32_t)w->cell, .specimen = w->def.specimen, .staging = w->def.staging, .watch = w->def.watch};
     const PageDef page = {.title = w->name, .staging = w->def.staging, .watch = w->def.watch};
     w->phase = "  collecting: manifest";
     gboolean ok = manifest_write(&w->def, count, &error);
@@ -506,7 +506,8 @@ const Verb sweep_verb = {
     "Grows every variant of a sweep file: a parameter file of which keys vary, by lists, ranges, chance or a table. Leaves are grown side by side on all processors. "
     "Each appears whole in its folder, DIR/leaves/NAME; those that can't be grown leave a word on why in DIR/failed. At the end there are manifest.csv and "
     "manifest.jsonl, with parameters, counts and hashes of all, sheet.png and sheet.svg, a picture of all leaves with what varies along its axes, and index.html, "
-    "a page to browse them with.\n\n"
+    "a page to browse them with. Captions of a sample tell three keys: those whose values differ most from leaf to leaf (numbers in relation to their size) and that the "
+    "picture can show; in the order of the file.\n\n"
     "Stopped or killed at any time, the same command does what is missing. --shard I/N does one of N parts, on one machine or many that share the folder; "
     "--collect, with the same options, then writes manifest, sheet and page. Several runs on one folder at once do no harm: each leaves to the others what they have in hand. "
     "Leaves that are of no variant of the sweep file any more are kept, and told of. A folder with leaves of other parameters or options is refused, with status 3, "

@@ -1,5 +1,6 @@
 #include "cli/sweep_trial.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -66,7 +67,10 @@ typedef struct {
     Output *output; /* whose hidden folder all is in */
     Interrupt *interrupt;
     Progress *progress;
-    gint64 limit; /* monotonic time, µs */
+    const BatchDef *def; /* of the trial */
+    gint64 limit;        /* monotonic time, µs */
+    double part;         /* of its growth that was done */
+    uint64_t bytes;      /* written */
     char *facts;
 } Trial;
 
@@ -81,13 +85,18 @@ static gboolean on_tick(const BatchState *now, gpointer user)
 {
     Trial *t = user;
     progress_part(t->progress, now->part, t->facts);
+    uint64_t bytes = batch_bytes(t->def, t->def->shard);
+    t->part = MAX(t->part, now->part); /* both fall when it is stopped */
+    t->bytes = MAX(t->bytes, bytes);
     return interrupt_signal(t->interrupt) == 0 && g_get_monotonic_time() < t->limit;
 }
+
+static unsigned workers_of(const BatchDef *def) { return (unsigned)MIN(variants(def), def->threads ? def->threads : g_get_num_processors()); }
 
 static void tell(const BatchDef *def, uint64_t chosen, double seconds, uint64_t bytes)
 {
     uint64_t mine = variants(def);
-    unsigned workers = (unsigned)MIN(mine, def->threads ? def->threads : g_get_num_processors());
+    unsigned workers = workers_of(def);
     char *size = g_format_size(bytes), *all = g_format_size(bytes * mine), *each = sweep_duration(seconds), *whole = sweep_duration(seconds * (double)mine / workers);
     fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s of about %s and %s each (as number %" G_GUINT64_FORMAT ", grown for a trial): %s, %s on %u thread%s\n", mine, cli_s(mine),
             size, each, chosen, all, whole, workers, cli_s(workers));
@@ -95,6 +104,20 @@ static void tell(const BatchDef *def, uint64_t chosen, double seconds, uint64_t 
     g_free(whole);
     g_free(size);
     g_free(all);
+}
+
+/* What is known of a leaf that is not done when time is up: that all take more than it has taken. */
+static void tell_least(const BatchDef *def, const Trial *t, uint64_t chosen)
+{
+    uint64_t mine = variants(def);
+    unsigned workers = workers_of(def);
+    char *whole = sweep_duration((double)TRIAL_SECONDS * (double)mine / workers), *size = g_format_size(t->bytes * mine);
+    char *state = t->part < 1.0 ? g_strdup_printf("%.0f %% of it grown by then", floor(100.0 * t->part)) : g_strdup("grown by then, not yet written");
+    fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, takes longer than %d s (%s): more than %s%s%s on %u thread%s\n", mine,
+            cli_s(mine), chosen, TRIAL_SECONDS, state, t->bytes ? size : "", t->bytes ? " and " : "", whole, workers, cli_s(workers));
+    g_free(state);
+    g_free(whole);
+    g_free(size);
 }
 
 /* As the run would tell it. */
@@ -128,6 +151,7 @@ static int try_one(const BatchDef *def, Trial *t)
     BatchState end;
     gint64 begun = g_get_monotonic_time();
     t->limit = begun + TRIAL_SECONDS * G_USEC_PER_SEC;
+    t->def = &one;
     interrupt_polite(t->interrupt);
     gboolean good = batch_run(&one, on_tick, t, &end, &error);
     double seconds = (double)(g_get_monotonic_time() - begun) / G_USEC_PER_SEC;
@@ -141,8 +165,7 @@ static int try_one(const BatchDef *def, Trial *t)
     else if (good)
         status = tell_failure(def, out, middle);
     else if (g_error_matches(error, G_IO_ERROR, G_IO_ERROR_CANCELLED))
-        fprintf(stderr, "%" G_GUINT64_FORMAT " variant%s; number %" G_GUINT64_FORMAT ", grown for a trial, takes longer than %d s, so size and time are not known\n", mine,
-                cli_s(mine), middle, TRIAL_SECONDS);
+        tell_least(def, t, middle);
     else
         status = run_report(g_steal_pointer(&error), FALSE);
     g_clear_error(&error);

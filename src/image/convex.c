@@ -376,8 +376,10 @@ static double shared(Union *u, uint32_t i, uint32_t j)
 static double unhidden(Union *u, uint32_t place)
 {
     uint32_t i = u->rank[place], s = ring_start(&u->part, i);
-    if (place == 1)
-        return MAX(u->size[1] - shared(u, i, u->rank[0]), 0.0);
+    if (place == 1) {
+        double own = u->size[1] - shared(u, i, u->rank[0]);
+        return MAX(own, 0.0);
+    }
     rings_reset(u->rest);
     rings_copy(u->rest, u->part.v + s, u->part.end[i] - s);
     for (uint32_t j = 0; j < place && u->rest->n > 0; j++) {

@@ -85,8 +85,10 @@ static float pixel_cover(Tile *t, TileBox box, uint32_t pixel, Vec2 corner, floa
         if ((s->cut & CUT_A) != 0)
             add_wedge(&t->area, s, corner);
     }
-    if (blade == 1.0f)
-        return (float)MIN(union_area(&t->area), 1.0);
+    if (blade == 1.0f) {
+        double area = union_area(&t->area);
+        return (float)MIN(area, 1.0);
+    }
     if (!t->has_blade)
         tile_blade(t, box);
     double area = union_area_within(&t->area, t->blade.v, t->blade.n_v, corner);

@@ -199,6 +199,15 @@ def read_terminal(master):
         return b""
 
 
+def test_dry_run_of_a_leaf_that_takes_long():
+    """What is told is less than all will take, but something."""
+    sweep_file("[sweep]\nparams = leaf.ini\nseed = from 1 to 60 by 1\n")
+    told = sweep("many.ini", "--dry-run", "--threads", "1", "--set", "growth.final_length=20000").err
+    found = re.search(r"^60 variants; number 30, grown for a trial, takes longer than 20 s \((\d+) % of it grown by then\): more than 20 min on 1 thread$", told, re.MULTILINE)
+    if not found or int(found.group(1)) > 99:
+        raise AssertionError(told)
+
+
 def test_dry_run_leaves_nothing_behind():
     sweep_file()
     os.mkdir("trials")
@@ -331,6 +340,42 @@ def test_dataset():
         sweep("many.ini", "-q", "--dataset", "--size", "112", "--shard", f"{i}/3", "-o", "shards")
     sweep("many.ini", "-q", "--dataset", "--size", "112", "--validation", "0.4", "-o", "shards", "--collect")
     same(contents("shards") == contents("out/many"), True, "three shards")
+
+
+def write_png(name, width, height, pixel):
+    """RGB; pixel(x, y) gives the three."""
+    lines = b"".join(b"\0" + bytes(v for x in range(width) for v in pixel(x, y)) for y in range(height))
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    return write(name, b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
+
+
+def test_dataset_of_a_blade_with_holes():
+    """A scan of a leaf with two holes: its lamina is its pixels, without those in the holes."""
+    def pixel(x, y):
+        holes = (x - 70) ** 2 + (y - 90) ** 2 < 14 ** 2 or (x - 125) ** 2 + (y - 140) ** 2 < 9 ** 2
+        blade = ((x - 100) / 60) ** 2 + ((y - 120) / 95) ** 2 < 1 or (abs(x - 100) < 3 and 200 < y < 232)
+        return (40, 90, 30) if blade and not holes else (245, 243, 240)
+    write_png("scan.png", 200, 240, pixel)
+    same(run("capture", "scan.png", "-q", "-o", "captured").status, 0)
+    write("captured/many.ini", "[sweep]\nparams = scan.ini\nseed = 1; 2\n")
+    sweep("captured/many.ini", "-q", "--dataset", "--size", "160", "--validation", "0", "--cell", "0")
+    with open("out/many/dataset/annotations/train.json", encoding="utf-8") as file:
+        coco = json.load(file)
+    for image in coco["images"]:
+        width, height, mask = read_png(f"out/many/dataset/lamina/train/{image['file_name']}")
+        blade = {(i % width, i // width) for i, v in enumerate(mask) if v >= 128}
+        lamina = [a for a in coco["annotations"] if a["image_id"] == image["id"] and a["category_id"] == 1]
+        same(len(lamina), 1)
+        check_region(lamina[0], blade, width, height)
+        # The test sees holes: background that no way leads to from the edge of the image.
+        outside, todo = {(0, 0)}, [(0, 0)]
+        while todo:
+            x, y = todo.pop()
+            near = {(x + dx, y + dy) for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)) if 0 <= x + dx < width and 0 <= y + dy < height} - blade - outside
+            outside |= near
+            todo += near
+        inside = width * height - len(outside) - len(blade)
+        same(0.02 < inside / len(blade) < 0.08, True, f"{inside} pixels in holes, {len(blade)} of the blade")
 
 
 def test_dataset_parts_by_seed():

@@ -483,6 +483,79 @@ static void test_matrix(void)
     fixture_clear(&f);
 }
 
+/* Small cells on no wider a page than they, or the heads above them, need. */
+static void test_narrow(void)
+{
+    static const uint32_t cell[] = {40, 60, 110, 200, 320};
+    Fixture f = make_sweep("veins.kill_distance = 40; 20; 10\nwidth.exponent = 2; 2.5; 3\n");
+    for (uint64_t i = 0; i < 9; i++)
+        put_grown(&f, i, 200, 320);
+    for (gsize c = 0; c < G_N_ELEMENTS(cell); c++) {
+        write_sheet(&f, cell[c]);
+        check_pictures(&f, "sheet.svg", "sheet.png", 0, 9);
+        Picture d = read_drawing(f.dir, "sheet.svg");
+        double left = d.width, right = 0.0;
+        for (guint i = 0; i < d.item->len; i++) {
+            left = MIN(left, item(&d, i)->x);
+            right = MAX(right, item(&d, i)->x + item(&d, i)->w);
+        }
+        g_assert_cmpfloat(d.width - right, <, 1.6 * left + 8.0);
+        drawing_clear(&d);
+    }
+    fixture_clear(&f);
+}
+
+static char *captions(const char *sweep, gboolean specimen)
+{
+    Fixture f = make_sweep(sweep);
+    SheetDef def = {.cell = 64, .specimen = specimen};
+    SheetPlan *p = sheet_plan_new(f.s, f.dir, &def);
+    GString *s = g_string_new(NULL);
+    for (guint i = 0; i < p->told->len; i++)
+        g_string_append_printf(s, "%s%s", i ? " " : "", sweep_key(f.s, g_array_index(p->told, SheetItem, i).key).key);
+    sheet_plan_free(p);
+    fixture_clear(&f);
+    return g_string_free(s, FALSE);
+}
+
+/* Captions of many keys: those that differ most, in the file's order. */
+static void test_told(void)
+{
+#define NARROW "growth.final_length = uniform(500, 505)\nwidth.exponent = uniform(2, 2.01)\n"
+    static const struct {
+        const char *sweep, *told;
+        gboolean specimen;
+    } c[] = {
+        {NARROW "veins.kill_distance = uniform(1, 30)\n", "growth.final_length width.exponent veins.kill_distance", FALSE},
+        {NARROW "veins.kill_distance = uniform(1, 30)\nsources.density = log-uniform(0.0001, 0.01)\nwidth.minimum = uniform(1, 3)\n",
+         "veins.kill_distance sources.density width.minimum", FALSE},
+        /* A word that differs; a length of one value alone does not. */
+        {NARROW "width.minimum = uniform(1, 1.1)\nveins.pattern = choice(open; closed)\nveins.kill_distance = choice(3; 3)\n",
+         "growth.final_length width.minimum veins.pattern", FALSE},
+        /* What the picture doesn't show comes last, points after it. */
+        {"texture.lamina_colour = choice(#000000; #ffffff)\nveins.seeds = choice(0,0 | 0,0; 0.1,0)\n" NARROW "veins.pattern = open; closed\n",
+         "growth.final_length width.exponent veins.pattern", FALSE},
+        {"texture.lamina_colour = choice(#000000; #ffffff)\nveins.seeds = choice(0,0 | 0,0; 0.1,0)\n" NARROW "veins.pattern = open; closed\n",
+         "texture.lamina_colour growth.final_length veins.pattern", TRUE},
+        {"texture.lamina_colour = choice(#000000; #ffffff)\nveins.seeds = choice(0,0 | 0,0; 0.1,0)\nspecimen.light = uniform(0, 1)\nveins.pattern = open; closed\n",
+         "texture.lamina_colour specimen.light veins.pattern", FALSE},
+        {"seed = each\n" NARROW "width.minimum = uniform(1, 3)\nveins.kill_distance = uniform(1, 3)\n", "growth.final_length width.minimum veins.kill_distance", FALSE},
+    };
+    for (gsize i = 0; i < G_N_ELEMENTS(c); i++) {
+        char *sweep = g_strconcat("mode = sample\ncount = 200\n", c[i].sweep, NULL), *told = captions(sweep, c[i].specimen);
+        g_assert_cmpstr(told, ==, c[i].told);
+        g_free(told);
+        g_free(sweep);
+    }
+    /* Ties, and what goes with another as the columns of a table do, but for those that go with nothing. */
+    char *told = captions("mode = zip\nveins.kill_distance = 1; 1; 2; 2\nwidth.minimum = 1; 1; 2; 2\nwidth.exponent = 1; 2; 1; 2\nwidth.thickening = 3; 3; 3; 4\n", FALSE);
+    g_assert_cmpstr(told, ==, "veins.kill_distance width.exponent width.thickening");
+    g_free(told);
+    told = captions("mode = zip\nveins.kill_distance = 1; 2\nwidth.minimum = 1; 2\nwidth.exponent = 1; 2\ngrowth.final_length = 500; 1000\n", FALSE);
+    g_assert_cmpstr(told, ==, "veins.kill_distance width.minimum width.exponent");
+    g_free(told);
+}
+
 static bool exists(const Fixture *f, const char *name)
 {
     char *path = g_build_filename(f->dir, name, NULL);
@@ -665,6 +738,8 @@ int main(int argc, char **argv)
     g_test_add_func("/sheet/no-overlap", test_no_overlap);
     g_test_add_func("/sheet/figure", test_figure);
     g_test_add_func("/sheet/matrix", test_matrix);
+    g_test_add_func("/sheet/narrow", test_narrow);
+    g_test_add_func("/sheet/told", test_told);
     g_test_add_func("/sheet/many", test_many);
     g_test_add_func("/sheet/png-is-svg", test_png_is_svg);
     g_test_add_func("/sheet/bad", test_bad);
