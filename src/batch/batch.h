@@ -32,6 +32,10 @@ typedef struct {
  * (a full disk), after which the rest was left, or of G_IO_ERROR_CANCELLED; variants whose parameters don't go together are no such error: they are rows. */
 gboolean batch_run(const BatchDef *def, gboolean (*tick)(const BatchState *state, gpointer user), gpointer user, BatchState *end, GError **error);
 
+/* Before anything else, while `staging` is there: other runs on the folder must be of the same sweep, parameters and options. FALSE with the name of the hidden
+ * folder of one that isn't in *other (free it), or with an error. */
+gboolean batch_claim(const BatchDef *def, char **other, GError **error);
+
 /* What the files of a variant take that is there, or of one at hand those written so far, bytes; 0 if there are none. */
 uint64_t batch_bytes(const BatchDef *def, uint64_t index);
 

@@ -16,8 +16,7 @@ static GDir *open_in(const BatchDef *def, const char *relative)
     return dir;
 }
 
-/* The next hidden folder that isn't this run's own. */
-static const char *next_hidden(const BatchDef *def, GDir *dir)
+const char *batch_next_hidden(const BatchDef *def, GDir *dir)
 {
     const char *name, *own = def->staging ? strrchr(def->staging, '/') : NULL;
     while (dir && (name = g_dir_read_name(dir)))
@@ -31,7 +30,7 @@ bool batch_in_hand(const BatchDef *def, const char *variant)
     GDir *dir = g_dir_open(def->out, 0, NULL);
     const char *name;
     bool found = false;
-    while (!found && (name = next_hidden(def, dir))) {
+    while (!found && (name = batch_next_hidden(def, dir))) {
         char *path = g_build_filename(def->out, name, variant, NULL);
         found = g_file_test(path, G_FILE_TEST_IS_DIR);
         g_free(path);
@@ -189,7 +188,7 @@ void batch_hidden(const BatchDef *def, BatchNames *out)
     *out = (BatchNames){0};
     GDir *dir = g_dir_open(def->out, 0, NULL);
     const char *name;
-    while ((name = next_hidden(def, dir)))
+    while ((name = batch_next_hidden(def, dir)))
         add(out, g_strdup(name));
     if (dir)
         g_dir_close(dir);

@@ -35,6 +35,9 @@ gboolean batch_place_file(const char *staging, const char *out, const char *name
 /* Writes a row, in a folder that need not be there. */
 gboolean batch_write_row(const char *row, const char *path, GError **error);
 
+/* The next hidden folder of another run; NULL: there is no more. `dir` is the output folder, or NULL. */
+const char *batch_next_hidden(const BatchDef *def, GDir *dir);
+
 /* Whether another run, on this machine or another, has begun with the variant and not ended; a run that was killed on another machine looks so, too. */
 bool batch_in_hand(const BatchDef *def, const char *variant);
 

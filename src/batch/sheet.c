@@ -9,6 +9,8 @@
 #include "batch/sheet_private.h"
 #include "image/staged.h"
 
+enum { DEFAULT_CELL = 320, LEAST_CELL = 32, MOST_CELL = 2048, MOST_WIDTH = 20000 }; /* pixels; wider ones, as of many columns, have smaller cells */
+
 /* "sheet.svg", "sheet-2.svg" …, in a folder or by itself. */
 static char *file_name(const char *out, uint64_t sheet, const char *ending)
 {
@@ -37,16 +39,41 @@ static gboolean put_text(Writer *w, const GString *text, GError **error)
     return FALSE;
 }
 
-static gboolean put_band(Writer *w, GError **error)
+/* One part of a band: drawn onto the stripe that begins at `top`, written with the first stripe. */
+static gboolean put_part(Writer *w, int top, GError **error)
+{
+    return w->band.svg->len == 0 || (sheet_png_draw(w->png, w->style->str, w->band.svg, w->band.height, top, error) && (top > 0 || put_text(w, w->band.svg, error)));
+}
+
+/* A band, stripe by stripe: what is drawn already, or a line of cells part by part, anew for each stripe. */
+static gboolean put_stripes(Writer *w, const uint64_t *line, GError **error)
+{
+    uint32_t parts = line ? sheet_line_parts(w->sheet, *line) : 1;
+    int height = w->band.height, most = sheet_png_stripe(w->png, height);
+    gboolean ok = TRUE;
+    for (int top = 0; ok && top < height; top += most) {
+        ok = sheet_png_begin_stripe(w->png, MIN(most, height - top), error);
+        for (uint32_t i = 0; ok && i < parts; i++) {
+            if (line) {
+                g_string_truncate(w->band.svg, 0);
+                sheet_draw_part(w->sheet, *line, i, w->band.svg);
+            }
+            ok = put_part(w, top, error);
+        }
+        ok = ok && sheet_png_end_stripe(w->png, error);
+    }
+    return ok;
+}
+
+/* `line`: of cells; NULL: what is drawn already. */
+static gboolean put_band(Writer *w, const uint64_t *line, GError **error)
 {
     gboolean ok = TRUE;
     if (w->png && w->band.height) {
-        ok = sheet_png_band(w->png, w->style->str, &w->band, error);
-        char *place = g_strdup_printf("<g transform=\"translate(0,%d)\">\n", w->y);
-        g_string_prepend(w->band.svg, place);
-        g_string_append(w->band.svg, "</g>\n");
-        ok = ok && put_text(w, w->band.svg, error);
-        g_free(place);
+        ok = fprintf(w->svg.file, "<g transform=\"translate(0,%d)\">\n", w->y) >= 0 && put_stripes(w, line, error);
+        ok = ok && fputs("</g>\n", w->svg.file) >= 0;
+        if (!ok && !(error && *error))
+            staged_error(w->svg.path, errno, error);
     }
     w->y += w->band.height;
     g_string_truncate(w->band.svg, 0);
@@ -62,22 +89,19 @@ static gboolean put_bands(Writer *w, GError **error)
     uint64_t from = sheet->sheet * p->sheet_lines, to = MIN(from + p->sheet_lines, p->lines);
     w->y = 0;
     sheet_draw_head(sheet, &w->band);
-    gboolean ok = put_band(w, error);
+    gboolean ok = put_band(w, NULL, error);
     sheet_draw_columns(sheet, &w->band);
-    ok = ok && put_band(w, error);
+    ok = ok && put_band(w, NULL, error);
     for (uint64_t line = from; ok && line < to; line++) {
         SheetLine at = sheet_plan_line(p, line);
         if (at.opens || line == from)
             sheet_draw_group(sheet, at.group, !at.opens, &w->band);
-        ok = put_band(w, error);
-        if (w->png && ok)
-            sheet_draw_line(sheet, line, &w->band);
-        else
-            w->band.height = sheet_line_height(sheet);
-        ok = ok && put_band(w, error) && (!w->png || watch_tick(&sheet->watch, (double)(line + 1) / (double)p->lines, error));
+        ok = put_band(w, NULL, error);
+        w->band.height = sheet_line_height(sheet);
+        ok = ok && put_band(w, &line, error) && (!w->png || watch_tick(&sheet->watch, (double)(line + 1) / (double)p->lines, error));
     }
     sheet_draw_foot(sheet, w->failed, w->missing, &w->band);
-    return ok && put_band(w, error);
+    return ok && put_band(w, NULL, error);
 }
 
 static void count_outcomes(Writer *w)
@@ -168,8 +192,15 @@ gboolean sheet_write(const Sweep *s, const char *out, const SheetDef *def, GErro
     char *own = g_path_get_basename(sweep_path(s));
     if (g_str_has_suffix(own, ".ini"))
         own[strlen(own) - 4] = '\0';
-    Sheet sheet = {.plan = sheet_plan_new(s, out, def), .title = def->title ? def->title : own, .staging = def->staging, .watch = def->watch};
-    sheet_sizes(&sheet);
+    Sheet sheet = {.title = def->title ? def->title : own, .staging = def->staging, .watch = def->watch};
+    SheetDef fitted = *def;
+    for (fitted.cell = def->cell ? CLAMP(def->cell, LEAST_CELL, MOST_CELL) : DEFAULT_CELL;; fitted.cell = MAX(fitted.cell * MOST_WIDTH / (uint32_t)sheet.size.width, LEAST_CELL)) {
+        sheet.plan = sheet_plan_new(s, out, &fitted);
+        sheet_sizes(&sheet);
+        if (sheet.size.width <= MOST_WIDTH || fitted.cell == LEAST_CELL)
+            break;
+        sheet_plan_free((SheetPlan *)sheet.plan);
+    }
     gboolean ok = TRUE;
     for (; ok && sheet.sheet < sheet.plan->sheets; sheet.sheet++)
         ok = write_sheet(&sheet, error);

@@ -345,23 +345,23 @@ void sheet_draw_group(const Sheet *sheet, uint64_t group, bool goes_on, SheetBan
 
 int sheet_line_height(const Sheet *sheet) { return (int)sheet->plan->picture_height + sheet->size.caption + sheet->size.gap_y; }
 
-void sheet_draw_line(const Sheet *sheet, uint64_t line, SheetBand *band)
+uint32_t sheet_line_parts(const Sheet *sheet, uint64_t line) { return 1 + sheet_plan_line(sheet->plan, line).cells; }
+
+void sheet_draw_part(const Sheet *sheet, uint64_t line, uint32_t part, GString *svg)
 {
     const SheetPlan *p = sheet->plan;
     const SheetSizes *z = &sheet->size;
     SheetLine at = sheet_plan_line(p, line);
-    if (p->matrix) {
+    if (part > 0) {
+        Row row;
+        row_read(p->s, p->out, at.first + part - 1, &row);
+        sheet_cell(sheet, &row, sheet_column_x(sheet, part - 1), svg);
+        row_clear(&row);
+    } else if (p->matrix) {
         const SheetAxis *rows = axis_from_end(p, 2);
         int lines = (int)rows->item->len, y = ((int)p->picture_height - (lines - 1) * (z->value * 4 / 3)) / 2 + z->value / 3;
-        put_level(sheet, rows, sheet_plan_level(p, p->axis->len - 2, at.first), z->margin, y, z->left - z->gap_x, AT_START, band->svg);
+        put_level(sheet, rows, sheet_plan_level(p, p->axis->len - 2, at.first), z->margin, y, z->left - z->gap_x, AT_START, svg);
     }
-    for (uint32_t c = 0; c < at.cells; c++) {
-        Row row;
-        row_read(p->s, p->out, at.first + c, &row);
-        sheet_cell(sheet, &row, sheet_column_x(sheet, c), band->svg);
-        row_clear(&row);
-    }
-    band->height = sheet_line_height(sheet);
 }
 
 void sheet_draw_foot(const Sheet *sheet, uint32_t failed, uint32_t missing, SheetBand *band)

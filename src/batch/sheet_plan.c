@@ -7,7 +7,7 @@
 #include "sweep/private.h"
 
 enum { MOST_COLUMNS = 24, MOST_LINES = 40, MOST_IN_ROW = 6, MOST_LETTERS = 26, LEVEL_DIGITS = 7, DRAWN_DIGITS = 4, MOST_COMPARED = 1000 };
-enum { DEFAULT_CELL = 320, LEAST_CELL = 32, MOST_CELL = 2048 };
+static const double most_pixels = 160e6; /* of a sheet: 600 cells of the common size need half of it */
 
 /* ---- items ---- */
 
@@ -153,11 +153,11 @@ static void plan_flow(SheetPlan *p)
 }
 
 /* Columns for n cells: about three to two as a whole, preferring those that leave few places of the last line empty. */
-static uint32_t choose_columns(uint64_t n, double cell_width, double cell_height)
+static uint32_t choose_columns(uint64_t n, uint64_t most, double cell_width, double cell_height)
 {
     if (n <= MOST_IN_ROW)
         return (uint32_t)MAX(n, 1);
-    double shown = (double)MIN(n, SHEET_MOST_CELLS), best = 1e300;
+    double shown = (double)MIN(n, most), best = 1e300;
     uint32_t chosen = 1;
     for (uint32_t c = 2; c <= 30; c++) {
         double lines = (double)(((uint64_t)shown + c - 1) / c), ratio = c * cell_width / (lines * cell_height) / 1.5;
@@ -195,7 +195,6 @@ static void measure_pictures(SheetPlan *p, uint32_t cell)
 SheetPlan *sheet_plan_new(const Sweep *s, const char *out, const SheetDef *def)
 {
     SheetPlan *p = g_new0(SheetPlan, 1);
-    uint32_t cell = def->cell ? CLAMP(def->cell, LEAST_CELL, MOST_CELL) : DEFAULT_CELL;
     p->s = s;
     p->out = out;
     p->specimen = def->specimen;
@@ -204,7 +203,7 @@ SheetPlan *sheet_plan_new(const Sweep *s, const char *out, const SheetDef *def)
     p->digits = g_new(int, sweep_keys(s) + 1);
     for (uint32_t k = 0; k < sweep_keys(s); k++)
         p->digits[k] = choose_digits(s, k);
-    measure_pictures(p, cell);
+    measure_pictures(p, def->cell);
     if (s->mode == SWEEP_GRID)
         plan_grid(p);
     else
@@ -213,11 +212,13 @@ SheetPlan *sheet_plan_new(const Sweep *s, const char *out, const SheetDef *def)
     p->numbered |= !p->told->len && !p->axis->len && count > 1;
     p->groups = count / p->group_cells;
     p->lettered = !p->matrix && !p->numbered && p->groups == 1 && count > 1 && count <= MOST_LETTERS;
+    double pixels = (p->picture_width + def->cell * 0.07) * (p->picture_height + def->cell * 0.3);
+    uint64_t most = MIN(SHEET_MOST_CELLS, (uint64_t)MAX(most_pixels / pixels, 1.0));
     if (!p->columns)
-        p->columns = choose_columns(p->group_cells, p->picture_width, p->picture_height + cell * 0.2);
+        p->columns = choose_columns(p->group_cells, most, p->picture_width, p->picture_height + def->cell * 0.2);
     p->group_lines = (p->group_cells + p->columns - 1) / p->columns;
     p->lines = p->groups * p->group_lines;
-    p->sheet_lines = CLAMP(SHEET_MOST_CELLS / p->columns, 1, MOST_LINES);
+    p->sheet_lines = CLAMP(most / p->columns, 1, MOST_LINES);
     p->sheets = (p->lines + p->sheet_lines - 1) / p->sheet_lines;
     return p;
 }

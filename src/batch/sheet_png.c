@@ -1,4 +1,4 @@
-/* A sheet's PNG, drawn by librsvg band by band, so that no picture of the whole is held. */
+/* A sheet's PNG, drawn by librsvg a few rows and one leaf at a time, so that memory doesn't go with its size. */
 #include <errno.h>
 #include <librsvg/rsvg.h>
 #include <png.h>
@@ -6,12 +6,15 @@
 #include "batch/sheet_private.h"
 #include "image/staged.h"
 
+enum { STRIPE = 4 << 20, MOST_STRIPES = 4 }; /* bytes; of a band, as a leaf is read once for each */
+
 struct SheetPng {
     png_structp png;
     png_infop info;
     Staged file;
     int width;
     uint8_t *row;
+    cairo_surface_t *stripe; /* NULL between stripes */
     int code;      /* errno of a failed write */
     char *message; /* libpng's, of any other failure */
 };
@@ -72,14 +75,14 @@ SheetPng *sheet_png_begin(const char *path, int width, int height, GError **erro
     return p;
 }
 
-/* The band as a drawing of its own. */
-static RsvgHandle *load(int width, const char *style, const SheetBand *band, GError **error)
+/* The part as a drawing of its own. */
+static RsvgHandle *load(int width, int height, const char *style, const GString *svg, GError **error)
 {
-    char *head = g_strdup_printf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\">\n", width, band->height);
+    char *head = g_strdup_printf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\">\n", width, height);
     GInputStream *in = g_memory_input_stream_new_from_data(head, -1, NULL);
     GMemoryInputStream *m = G_MEMORY_INPUT_STREAM(in);
     g_memory_input_stream_add_data(m, style, -1, NULL);
-    g_memory_input_stream_add_data(m, band->svg->str, (gssize)band->svg->len, NULL);
+    g_memory_input_stream_add_data(m, svg->str, (gssize)svg->len, NULL);
     g_memory_input_stream_add_data(m, "</svg>", -1, NULL);
     RsvgHandle *handle = rsvg_handle_new_from_stream_sync(in, NULL, RSVG_HANDLE_FLAG_UNLIMITED, NULL, error);
     g_object_unref(in);
@@ -87,12 +90,10 @@ static RsvgHandle *load(int width, const char *style, const SheetBand *band, GEr
     return handle;
 }
 
-static gboolean draw(RsvgHandle *handle, cairo_surface_t *surface, int height, GError **error)
+static gboolean draw(RsvgHandle *handle, cairo_surface_t *surface, int height, int top, GError **error)
 {
     cairo_t *cr = cairo_create(surface);
-    cairo_set_source_rgb(cr, 1.0, 1.0, 1.0);
-    cairo_paint(cr);
-    RsvgRectangle all = {0.0, 0.0, cairo_image_surface_get_width(surface), height};
+    RsvgRectangle all = {0.0, -top, cairo_image_surface_get_width(surface), height};
     gboolean ok = rsvg_handle_render_document(handle, cr, &all, error);
     cairo_status_t status = cairo_status(cr);
     if (ok && status != CAIRO_STATUS_SUCCESS) {
@@ -103,8 +104,9 @@ static gboolean draw(RsvgHandle *handle, cairo_surface_t *surface, int height, G
     return ok;
 }
 
-static gboolean put_rows(SheetPng *p, cairo_surface_t *surface, int height, GError **error)
+static gboolean put_rows(SheetPng *p, cairo_surface_t *surface, GError **error)
 {
+    int height = cairo_image_surface_get_height(surface);
     cairo_surface_flush(surface);
     const uint8_t *data = cairo_image_surface_get_data(surface);
     gsize stride = (gsize)cairo_image_surface_get_stride(surface);
@@ -122,22 +124,36 @@ static gboolean put_rows(SheetPng *p, cairo_surface_t *surface, int height, GErr
     return TRUE;
 }
 
-gboolean sheet_png_band(SheetPng *p, const char *style, const SheetBand *band, GError **error)
+int sheet_png_stripe(const SheetPng *p, int height) { return MAX(STRIPE / (4 * p->width), (height + MOST_STRIPES - 1) / MOST_STRIPES); }
+
+gboolean sheet_png_begin_stripe(SheetPng *p, int rows, GError **error)
 {
-    RsvgHandle *handle = load(p->width, style, band, error);
-    if (!handle) {
-        g_prefix_error(error, "can't draw %s: ", p->file.path);
+    p->stripe = cairo_image_surface_create(CAIRO_FORMAT_RGB24, p->width, rows);
+    if (cairo_surface_status(p->stripe) != CAIRO_STATUS_SUCCESS) {
+        g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_FAILED, "can't draw %s: %s", p->file.path, cairo_status_to_string(cairo_surface_status(p->stripe)));
         return FALSE;
     }
-    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, p->width, band->height);
-    gboolean ok = cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS;
+    cairo_t *cr = cairo_create(p->stripe);
+    cairo_set_source_rgb(cr, 1.0, 1.0, 1.0);
+    cairo_paint(cr);
+    cairo_destroy(cr);
+    return TRUE;
+}
+
+gboolean sheet_png_draw(SheetPng *p, const char *style, const GString *svg, int height, int top, GError **error)
+{
+    RsvgHandle *handle = load(p->width, height, style, svg, error);
+    gboolean ok = handle && draw(handle, p->stripe, height, top, error);
     if (!ok)
-        g_set_error(error, G_FILE_ERROR, G_FILE_ERROR_FAILED, "can't draw %s: %s", p->file.path, cairo_status_to_string(cairo_surface_status(surface)));
-    else if (!(ok = draw(handle, surface, band->height, error)))
         g_prefix_error(error, "can't draw %s: ", p->file.path);
-    ok = ok && put_rows(p, surface, band->height, error);
-    cairo_surface_destroy(surface);
-    g_object_unref(handle);
+    g_clear_object(&handle);
+    return ok;
+}
+
+gboolean sheet_png_end_stripe(SheetPng *p, GError **error)
+{
+    gboolean ok = put_rows(p, p->stripe, error);
+    g_clear_pointer(&p->stripe, cairo_surface_destroy);
     return ok;
 }
 
@@ -160,6 +176,7 @@ void sheet_png_abort(SheetPng *p)
         return;
     png_destroy_write_struct(&p->png, &p->info);
     staged_abort(&p->file);
+    g_clear_pointer(&p->stripe, cairo_surface_destroy);
     g_free(p->row);
     g_free(p->message);
     g_free(p);

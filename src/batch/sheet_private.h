@@ -101,7 +101,9 @@ int sheet_column_x(const Sheet *sheet, uint32_t column);
 void sheet_draw_head(const Sheet *sheet, SheetBand *band);
 void sheet_draw_columns(const Sheet *sheet, SheetBand *band);
 void sheet_draw_group(const Sheet *sheet, uint64_t group, bool goes_on, SheetBand *band);
-void sheet_draw_line(const Sheet *sheet, uint64_t line, SheetBand *band);
+/* A line in parts: the row's head, then its cells. */
+uint32_t sheet_line_parts(const Sheet *sheet, uint64_t line);
+void sheet_draw_part(const Sheet *sheet, uint64_t line, uint32_t part, GString *svg);
 void sheet_draw_foot(const Sheet *sheet, uint32_t failed, uint32_t missing, SheetBand *band);
 int sheet_line_height(const Sheet *sheet);
 
@@ -113,11 +115,15 @@ void sheet_cell(const Sheet *sheet, const Row *row, int x, GString *svg);
 /* Size of a PNG file; FALSE if it is none. */
 bool sheet_picture_size(const char *path, uint32_t *width, uint32_t *height);
 
-/* ---- the PNG, band by band (sheet_png.c) ---- */
+/* ---- the PNG, stripe by stripe (sheet_png.c) ---- */
 
 typedef struct SheetPng SheetPng;
 SheetPng *sheet_png_begin(const char *path, int width, int height, GError **error);
-gboolean sheet_png_band(SheetPng *png, const char *style, const SheetBand *band, GError **error);
+int sheet_png_stripe(const SheetPng *png, int height); /* rows that a stripe of such a band has at the most */
+gboolean sheet_png_begin_stripe(SheetPng *png, int rows, GError **error);
+/* Draws a part of a band as high as `height`; the stripe begins at the band's row `top`. */
+gboolean sheet_png_draw(SheetPng *png, const char *style, const GString *svg, int height, int top, GError **error);
+gboolean sheet_png_end_stripe(SheetPng *png, GError **error);
 gboolean sheet_png_end(SheetPng *png, GError **error);
 void sheet_png_abort(SheetPng *png);
 

@@ -18,7 +18,9 @@ static const double clear_contrast = 8.0;     /* over noise, the median of secon
 static const double short_gain = 0.3;        /* … of so much of that evidence, … */
 static const double kin_contrast = 0.6;      /* … and with so much of that contrast */
 static const double widens = 1.6;            /* mean width farther on over that so far: no vein does that, … */
+static const uint32_t cut_back = 4;          /* … and pixels of its way to that aren't its own … */
 static const uint32_t least_run = 16;        /* … seen over so many points to both sides */
+static const double least_bite = 0.02;       /* of the leaf's length: a vein that leaves the outline for more ends there and begins anew */
 static const uint32_t least_kin = 60, most_dismissed = 60;
 enum { MOST_VEINS = 4000 };                  /* with those dismissed; a palmate leaf of many secondaries has a thousand */
 
@@ -119,7 +121,8 @@ static void take_up(Search *s, FoundVein v)
 static bool cut_wide(const Search *s, FoundVein *v, FoundVein *rest)
 {
     uint32_t at = v->ghost || v->order != 1 || s->vein->len == 0 ? v->n : widening(v);
-    uint32_t keep = (uint32_t)((uint64_t)at * v->n_pixels / v->n);
+    uint32_t keep = (uint32_t)((uint64_t)at * v->n_pixels / v->n), back = cut_back;
+    keep -= MIN(keep, back);
     if (at == v->n || keep < 4 || v->n_pixels - keep < 4)
         return false;
     *rest = (FoundVein){.parent = s->vein->len, .order = (uint8_t)(s->orders + 1), .ghost = true, .n_pixels = v->n_pixels - keep};
@@ -127,7 +130,6 @@ static bool cut_wide(const Search *s, FoundVein *v, FoundVein *rest)
     v->n_pixels = keep;
     g_free(v->p);
     g_free(v->width);
-    v->contrast = 0.0;
     found_trace(&s->leaf, s->ridges, v);
     found_trace(&s->leaf, s->ridges, rest);
     return true;
@@ -224,6 +226,45 @@ static void weed(Search *s)
     g_free(all);
 }
 
+static bool off_leaf(const FoundLeaf *l, Vec2 q)
+{
+    if (!(q.x >= 0.0 && q.y >= 0.0 && q.x < l->width && q.y < l->height))
+        return true;
+    gsize i = (gsize)q.y * l->width + (gsize)q.x;
+    return !l->inside[i] && !l->hole[i];
+}
+
+/* Where a vein leaves the outline that it comes back to, from a point of it on; its last point when it doesn't. *next: from where it goes on. */
+static uint32_t next_bite(const Search *s, const FoundVein *v, uint32_t from, uint32_t *next)
+{
+    *next = v->n;
+    for (uint32_t i = from, end; i < v->n; i = end + 1) {
+        for (end = i; end < v->n && off_leaf(&s->leaf, v->p[end]); end++)
+            ;
+        if (i > from && end < v->n && vec_dist(v->p[i - 1], v->p[end]) > least_bite * s->leaf.length) {
+            *next = end;
+            return i - 1;
+        }
+    }
+    return v->n - 1;
+}
+
+/* A vein's points from one to another. */
+static void draw_run(const Search *s, const FoundVein *v, uint32_t from, uint32_t to, Drawing *d)
+{
+    uint32_t n = to + 1 - from;
+    Vec2 *p = g_new(Vec2, n);
+    double *w = g_new(double, n);
+    for (uint32_t i = 0; i < n; i++) {
+        p[i] = to_scan(s, v->p[from + i]);
+        w[i] = v->width[from + i] * s->ridges->step;
+    }
+    if (n >= 2)
+        drawing_add(d, p, w, n, v->order, NULL);
+    g_free(p);
+    g_free(w);
+}
+
 static Drawing *draw(const Search *s)
 {
     Drawing *d = drawing_new();
@@ -231,15 +272,10 @@ static Drawing *draw(const Search *s)
         FoundVein *v = vein_at(s, k);
         if (v->ghost || v->order > s->def->orders)
             continue;
-        Vec2 *p = g_new(Vec2, v->n);
-        double *w = g_new(double, v->n);
-        for (uint32_t i = 0; i < v->n; i++) {
-            p[i] = to_scan(s, v->p[i]);
-            w[i] = v->width[i] * s->ridges->step;
+        for (uint32_t from = 0, to, next; from < v->n; from = next) {
+            to = next_bite(s, v, from, &next);
+            draw_run(s, v, from, to, d);
         }
-        drawing_add(d, p, w, v->n, v->order, NULL);
-        g_free(p);
-        g_free(w);
     }
     return d;
 }
@@ -265,6 +301,7 @@ static void find_branching(Search *s, double threshold)
     }
     weed(s);
     found_hub(&s->leaf, (FoundVein *)(void *)s->vein->data, s->vein->len, s->base);
+    found_join((FoundVein *)(void *)s->vein->data, s->vein->len);
 }
 
 Drawing *found_veins(const Scan *scan, const Polygon *outline, Vec2 base, Vec2 tip, const FoundDef *def, GError **error)

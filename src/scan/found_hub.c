@@ -77,18 +77,33 @@ static bool run_on_blade(const FoundLeaf *l, Vec2 a, Vec2 b)
     return true;
 }
 
-/* The vein from its point `keep` on, with a straight run from the node to it, and before that one from `start`, if given. */
+/* How the vein heads at a point of it, as long as `length`. */
+static Vec2 slope(const FoundVein *v, uint32_t at, double length)
+{
+    Vec2 d = vec_sub(v->p[MIN(at + 6, v->n - 1)], v->p[at]);
+    double n = sqrt(vec_norm2(d));
+    return n > 0.0 ? vec_scale(d, length / n) : d;
+}
+
+/* On the way from a to b, which begins straight and ends along `end` (a cubic in Hermite's form). */
+static Vec2 bent(Vec2 a, Vec2 b, Vec2 end, double t)
+{
+    Vec2 straight = vec_sub(b, a);
+    return vec_add(vec_lerp(a, b, t), vec_scale(vec_sub(end, straight), t * t * (t - 1.0)));
+}
+
+/* The vein from its point `keep` on, with a run from the node to it, and before that a straight one from `start`, if given. */
 static void redraw(FoundVein *v, uint32_t keep, Vec2 node, const Vec2 *start)
 {
     double run = vec_dist(node, v->p[keep]), stub = start ? vec_dist(*start, node) : 0.0;
     uint32_t n_run = MAX(1, (uint32_t)(run / spacing + 0.5)), n_stub = stub > 0.0 ? MAX(1, (uint32_t)(stub / spacing + 0.5)) : 0;
     uint32_t n = n_stub + n_run + v->n - keep, m = 0;
-    Vec2 *p = g_new(Vec2, n);
+    Vec2 *p = g_new(Vec2, n), end = slope(v, keep, run);
     double *w = g_new(double, n);
     for (uint32_t k = 0; k < n_stub; k++)
         p[m++] = vec_lerp(*start, node, (double)k / n_stub);
     for (uint32_t k = 0; k < n_run; k++)
-        p[m++] = vec_lerp(node, v->p[keep], (double)k / n_run);
+        p[m++] = bent(node, v->p[keep], end, (double)k / n_run);
     for (uint32_t k = 0; k < m; k++)
         w[k] = v->width[keep];
     memcpy(p + m, v->p + keep, (v->n - keep) * sizeof *p);

@@ -133,9 +133,25 @@ static void take_out_holes(FoundLeaf *l, const Vec2 *base)
             hole[i] |= MASK_WORK;
     mask_dilate(&m, MASK_WORK, MASK_WORK, 2.0);
     for (gsize i = 0; i < n; i++)
-        if (hole[i] & MASK_WORK)
+        if (l->inside[i] && (hole[i] & MASK_WORK)) {
             l->inside[i] = 0;
+            l->hole[i] = 1;
+        }
     g_free(hole);
+}
+
+/* What of the blade isn't deep around holes goes with them. */
+static void add_rims(FoundLeaf *l, double r)
+{
+    gsize n = (gsize)l->width * l->height;
+    uint8_t *wide = g_new(uint8_t, n);
+    for (gsize i = 0; i < n; i++)
+        wide[i] = l->hole[i] ? MASK_LEAF : 0;
+    Mask m = {l->width, l->height, l->width, wide};
+    mask_dilate(&m, MASK_LEAF, MASK_LEAF, r + 1.0);
+    for (gsize i = 0; i < n; i++)
+        l->hole[i] = wide[i] && (l->hole[i] || (l->inside[i] && !l->deep[i]));
+    g_free(wide);
 }
 
 static void mark_blade(FoundLeaf *l, const Polygon *outline, const Vec2 *base)
@@ -143,6 +159,7 @@ static void mark_blade(FoundLeaf *l, const Polygon *outline, const Vec2 *base)
     gsize n = (gsize)l->width * l->height;
     l->inside = g_new0(uint8_t, n);
     l->deep = g_new0(uint8_t, n);
+    l->hole = g_new0(uint8_t, n);
     for (uint32_t y = 0; y < l->height; y++)
         for (uint32_t x = 0; x < l->width; x++) {
             double sx = l->x0 + (x + 0.5) * l->step, sy = l->y0 + (y + 0.5) * l->step;
@@ -151,6 +168,7 @@ static void mark_blade(FoundLeaf *l, const Polygon *outline, const Vec2 *base)
         }
     take_out_holes(l, base);
     erode(l, l->inside, MAX(border * l->length, 2.0), l->deep);
+    add_rims(l, MAX(border * l->length, 2.0));
 }
 
 /* --- illumination --- */
@@ -247,4 +265,5 @@ void found_leaf_clear(FoundLeaf *l)
         grey_image_free(l->plane[c]);
     g_free(l->inside);
     g_free(l->deep);
+    g_free(l->hole);
 }

@@ -58,6 +58,70 @@ static void spans_clear(Spans *s)
 
 static inline int32_t nearest(double v) { return (int32_t)floor(v + 0.5); }
 
+/* A sample on the line through a pixel, by how far it lies off, and its weight. */
+typedef struct {
+    int32_t dx, dy;
+    float weight;
+} Tap;
+
+/* A sample of a row of pixels. */
+typedef struct {
+    const float *px; /* for the row's first pixel; to be read from lo to hi - 1 only */
+    int32_t lo, hi;
+    float weight;
+} TapRow;
+
+/* Adds four samples at once, one after the other, so that sums are what they are when each is added alone. */
+static void add_four(const TapRow *t, float *restrict o, int32_t lo, int32_t hi)
+{
+    const float *a = t[0].px, *b = t[1].px, *c = t[2].px, *d = t[3].px;
+    float u = t[0].weight, v = t[1].weight, w = t[2].weight, z = t[3].weight;
+    for (int32_t x = lo; x < hi; x++)
+        o[x] = o[x] + u * a[x] + v * b[x] + w * c[x] + z * d[x];
+}
+
+static void add_one(const TapRow *t, float *restrict o, int32_t lo, int32_t hi)
+{
+    const float *a = t->px, u = t->weight;
+    for (int32_t x = lo; x < hi; x++)
+        o[x] += u * a[x];
+}
+
+/* All samples of a row, in order: together where all four lie in the image, else one by one. */
+static void add_row(const TapRow *t, uint32_t n, float *o, int32_t from, int32_t to)
+{
+    for (uint32_t k = 0; k < n; k += 4) {
+        uint32_t m = MIN(n - k, 4);
+        int32_t lo = from, hi = to;
+        for (uint32_t i = k; i < k + m; i++) {
+            lo = MAX(lo, t[i].lo);
+            hi = MIN(hi, t[i].hi);
+        }
+        bool together = m == 4 && lo < hi;
+        if (together)
+            add_four(t + k, o, lo, hi);
+        for (uint32_t i = k; i < k + m; i++) {
+            int32_t a = MAX(from, t[i].lo), b = MIN(to, t[i].hi);
+            if (together) {
+                add_one(&t[i], o, a, MIN(b, lo));
+                add_one(&t[i], o, MAX(a, hi), b);
+            } else {
+                add_one(&t[i], o, a, b);
+            }
+        }
+    }
+}
+
+/* Samples along a line, from one end to the other; returns how many. */
+static uint32_t lay_taps(const Kernel *k, int32_t n, double spacing, Vec2 along, Tap *tap)
+{
+    for (int32_t i = -n; i <= n; i++) {
+        int32_t a = i < 0 ? -i : i, dx = nearest(a * spacing * along.x), dy = nearest(a * spacing * along.y);
+        tap[i + n] = (Tap){i < 0 ? -dx : dx, i < 0 ? -dy : dy, (float)k->w[a]};
+    }
+    return (uint32_t)(2 * n + 1);
+}
+
 /* Weighted mean along the line through each pixel; samples are taken at whole pixels, a symmetric set of them. What lies off the image
  * counts as 0. */
 static void average_along(const GreyImage *in, const Spans *s, Vec2 along, double reach, double spacing, GreyImage *out)
@@ -65,30 +129,33 @@ static void average_along(const GreyImage *in, const Spans *s, Vec2 along, doubl
     int32_t w = (int32_t)in->width, h = (int32_t)in->height, n = (int32_t)ceil(line_reach * reach / spacing);
     Kernel k = kernel_gaussian(reach / spacing, line_reach);
     n = MIN(n, (int32_t)k.r);
+    Tap *tap = g_new(Tap, 2 * n + 1);
+    TapRow *row = g_new(TapRow, 2 * n + 1);
+    uint32_t n_taps = lay_taps(&k, n, spacing, along, tap);
     for (int32_t y = 0; y < h; y++) {
         float *o = out->px + (gsize)y * in->width;
+        uint32_t m = 0;
         memset(o, 0, in->width * sizeof *o);
-        for (int32_t i = -n; i <= n; i++) {
-            int32_t a = i < 0 ? -i : i, dx = nearest(a * spacing * along.x), dy = nearest(a * spacing * along.y);
-            dx = i < 0 ? -dx : dx;
-            dy = i < 0 ? -dy : dy;
-            if (y + dy < 0 || y + dy >= h)
-                continue;
-            const float *r = in->px + (gsize)(y + dy) * in->width;
-            float weight = (float)k.w[a];
-            for (int32_t x = MAX(s->lo[y], -dx); x < MIN(s->hi[y], w - dx); x++)
-                o[x] += weight * r[x + dx];
+        for (uint32_t i = 0; i < n_taps; i++) {
+            int32_t dx = tap[i].dx, dy = tap[i].dy;
+            if (y + dy >= 0 && y + dy < h)
+                row[m++] = (TapRow){in->px + (ptrdiff_t)(y + dy) * w + dx, MAX(0, -dx), MIN(w, w - dx), tap[i].weight};
         }
+        add_row(row, m, o, s->lo[y], s->hi[y]);
     }
+    g_free(tap);
+    g_free(row);
     kernel_clear(&k);
 }
 
 static void compare_sides(const FoundLeaf *l, const Spans *s, const GreyImage *mean, Vec2 across, uint8_t direction, FoundLines *f)
 {
     int32_t dx = nearest(across.x), dy = nearest(across.y), w = (int32_t)l->width, h = (int32_t)l->height;
-    bool wanted[FOUND_MOVES] = {false};
+    float *wanted[FOUND_MOVES];
+    uint32_t n_wanted = 0;
     for (uint32_t m = 0; f->along[0] && m < FOUND_MOVES; m++)
-        wanted[m] = memchr(step_directions[m], direction, 3) != NULL;
+        if (memchr(step_directions[m], direction, 3))
+            wanted[n_wanted++] = f->along[m]->px;
     for (int32_t y = abs(dy); y < h - abs(dy); y++)
         for (int32_t x = MAX(s->lo[y], abs(dx)); x < MIN(s->hi[y], w - abs(dx)); x++) {
             gsize i = (gsize)y * l->width + (gsize)x;
@@ -102,9 +169,8 @@ static void compare_sides(const FoundLeaf *l, const Spans *s, const GreyImage *m
                 f->direction[i] = direction;
             }
             f->other->px[i] = MAX(f->other->px[i], -greater);
-            for (uint32_t m = 0; m < FOUND_MOVES; m++)
-                if (wanted[m])
-                    f->along[m]->px[i] = MAX(f->along[m]->px[i], lesser);
+            for (uint32_t m = 0; m < n_wanted; m++)
+                wanted[m][i] = MAX(wanted[m][i], lesser);
         }
 }
 

@@ -14,6 +14,7 @@ typedef struct {
     uint32_t pad;        /* pixels around the outline's box */
     uint8_t *inside;     /* [height][width] 1 in the blade */
     uint8_t *deep;       /* 1 where a ridge is none of the border's */
+    uint8_t *hole;       /* 1 in holes that the outline doesn't know of, and around them where the blade isn't deep */
     uint32_t n_planes;   /* 1 or 3 */
     GreyImage *plane[3]; /* illumination evened, 0 outside, veins of either polarity */
 } FoundLeaf;
@@ -82,6 +83,9 @@ void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v);
 /* Appends the primaries of a parallel-veined leaf, from base to tip, their pixels only; false, and nothing appended, when the leaf is none. Threshold: strength
  * that makes a ridge. */
 bool found_parallel(const FoundLeaf *l, const FoundRidges *r, Vec2 base, Vec2 tip, double threshold, GArray *vein);
+
+/* Veins begin on the lines of those they leave. */
+void found_join(FoundVein *vein, uint32_t n);
 
 /* Primaries that run together at the base begin at one node on the midvein, which is the first of the veins and begins at the base itself. */
 void found_hub(const FoundLeaf *l, FoundVein *vein, uint32_t n, Vec2 base);

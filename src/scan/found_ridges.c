@@ -25,16 +25,21 @@ static void take(const FoundLeaf *l, FoundRidges *r, FoundLines *f, double half,
 {
     *noise = found_quantile(l, f->other, noise_quantile);
     *noise = MAX(*noise, least_noise);
+    float sine[FOUND_DIRECTIONS], cosine[FOUND_DIRECTIONS];
+    for (uint32_t d = 0; d < FOUND_DIRECTIONS; d++) {
+        double s, c;
+        dtrig_sin_cos(2.0 * d * DTRIG_PI / FOUND_DIRECTIONS, &s, &c);
+        sine[d] = (float)s;
+        cosine[d] = (float)c;
+    }
     for (gsize i = 0; i < (gsize)l->width * l->height; i++) {
         if (!l->deep[i] || !(f->best->px[i] > 0.0f))
             continue;
         float s = strength_of((double)f->best->px[i] / *noise);
         if (s > r->strength->px[i]) {
-            double sine, cosine;
-            dtrig_sin_cos(2.0 * f->direction[i] * DTRIG_PI / FOUND_DIRECTIONS, &sine, &cosine);
             r->strength->px[i] = s;
-            r->cosine->px[i] = (float)cosine;
-            r->sine->px[i] = (float)sine;
+            r->cosine->px[i] = cosine[f->direction[i]];
+            r->sine->px[i] = sine[f->direction[i]];
         }
         if (f->best->px[i] > contrast->px[i]) {
             contrast->px[i] = f->best->px[i];

@@ -150,6 +150,28 @@ static void median_filter(double *w, uint32_t n)
     g_free(out);
 }
 
+static bool unseen(const FoundLeaf *l, Vec2 q)
+{
+    if (!(q.x >= 0.0 && q.y >= 0.0 && q.x < l->width && q.y < l->height))
+        return true;
+    gsize i = (gsize)q.y * l->width + (gsize)q.x;
+    return !l->inside[i] || l->hole[i];
+}
+
+/* Straight over holes, from where it is last seen to where it is seen again, and as wide as the ends are. */
+static void bridge(const FoundLeaf *l, FoundVein *v)
+{
+    for (uint32_t i = 1, end; i < v->n; i = end + 1) {
+        for (end = i; end < v->n && unseen(l, v->p[end]); end++)
+            ;
+        for (uint32_t k = i; end < v->n && k < end; k++) {
+            double t = (double)(k - i + 1) / (end - i + 1);
+            v->p[k] = vec_lerp(v->p[i - 1], v->p[end], t);
+            v->width[k] = v->width[i - 1] + (v->width[end] - v->width[i - 1]) * t;
+        }
+    }
+}
+
 void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v)
 {
     Vec2 *chain = g_new(Vec2, v->n_pixels);
@@ -159,13 +181,16 @@ void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v)
     smooth_points(v->p, v->n, chain_smoothing);
     v->width = g_new0(double, v->n);
     Vec2 *shift = g_new0(Vec2, v->n);
+    double sum = 0.0, n_seen = 0.0;
     for (uint32_t pass = 0; pass < 2; pass++) {
         Across *a = profiles(r->light, v->p, v->n);
         for (uint32_t i = 0; i < v->n; i++) {
             double scale = sample(r->width, v->p[i]) / l->step, middle, height;
             scale = CLAMP(scale, 2.0, PROFILE * profile_step / 1.6);
             measure(&a[i], scale, &middle, &v->width[i], &height);
-            v->contrast += pass == 1 ? height / v->n / r->noise : 0.0;
+            bool counts = pass == 1 && !unseen(l, v->p[i]);
+            sum += counts ? height : 0.0;
+            n_seen += counts;
             if (v->width[i] == 0.0)
                 v->width[i] = scale;
             shift[i] = vec_scale(normal_at(v->p, v->n, i), CLAMP(middle, -0.5 * scale - 1.0, 0.5 * scale + 1.0));
@@ -176,7 +201,9 @@ void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v)
             v->p[i] = vec_add(v->p[i], shift[i]);
         g_free(a);
     }
+    v->contrast = sum / MAX(n_seen, 1.0) / r->noise;
     median_filter(v->width, v->n);
+    bridge(l, v);
     g_free(shift);
     g_free(chain);
 }

@@ -1,5 +1,7 @@
 #include "scan/profile.h"
 
+#include <math.h>
+
 #include "geom/march.h"
 #include "geom/ring.h"
 #include "scan/axis.h"
@@ -17,6 +19,9 @@
 #define VEINS_SAY 0.02 /* gather_compare beyond which veins tell base from tip, rather than the outline … */
 #define VEINS_INSIST 0.12 /* … and beyond which they gainsay a short petiole, which may be the tip of a lobe, */
 #define SHORT 0.15        /* one shorter than this share of the axis */
+#define PALE 0.5          /* of the way from the threshold to the ground's level: what may still be a vein; */
+#define MEND 1.25         /* radius of the disc that closes what pale veins leave open where the petiole meets the blade, and … */
+#define MEND_REACH 6.0    /* … how far around, in widths of the petiole */
 
 ProfileDef profile_def_default(void)
 {
@@ -245,6 +250,47 @@ static Polygon *finish(const Capture *c, const Polygon *traced)
     return p;
 }
 
+/* Mean level of what lies around the leaf in its box; the threshold's where nothing does. */
+static double ground_level(const Capture *c)
+{
+    double sum = 0.0, n = 0.0;
+    for (uint32_t y = c->box.y0; y <= c->box.y1; y++)
+        for (uint32_t x = c->box.x0; x <= c->box.x1; x++)
+            if (!(*mask_at(c->mask, x, y) & (MASK_LEAF | MASK_THIS))) {
+                sum += level_of(c, x, y);
+                n += 1.0;
+            }
+    return n > 0.0 ? sum / n : c->threshold->level;
+}
+
+/* Veins run together where the petiole meets the blade, and may be paler there than the threshold, though not as pale as the ground: slits and bites
+ * that they leave in the blade are closed. */
+static void mend_base(const Capture *c, const Mask *w, const Stalk *s)
+{
+    const double most = PALE * fabs(ground_level(c) - c->threshold->level);
+    const double r = MEND * s->width, reach = MEND_REACH * s->width, around = reach + 2.0 * r + 2.0;
+    const uint8_t blade = MASK_THIS | MASK_STALK;
+    MaskBox b = {(uint32_t)MAX(0.0, s->base.x - around), (uint32_t)MAX(0.0, s->base.y - around), (uint32_t)MIN(w->width - 1.0, s->base.x + around),
+                 (uint32_t)MIN(w->height - 1.0, s->base.y + around)};
+    Mask m = mask_window(w, b);
+    for (uint32_t y = 0; y < m.height; y++)
+        for (uint32_t x = 0; x < m.width; x++) {
+            uint8_t *px = mask_at(&m, x, y);
+            *px = (uint8_t)((*px & ~MASK_WORK) | ((*px & blade) == MASK_THIS ? MASK_WORK : 0));
+        }
+    mask_dilate(&m, MASK_WORK, MASK_WORK, r);
+    mask_erode(&m, MASK_WORK, MASK_WORK, r);
+    for (uint32_t y = 0; y < m.height; y++)
+        for (uint32_t x = 0; x < m.width; x++) {
+            uint8_t *px = mask_at(&m, x, y);
+            double level = level_of(c, c->box.x0 + b.x0 + x, c->box.y0 + b.y0 + y);
+            if ((*px & (MASK_WORK | MASK_THIS)) == MASK_WORK && fabs(level - c->threshold->level) <= most &&
+                vec_dist(vec2(b.x0 + x, b.y0 + y), s->base) <= reach)
+                *px |= MASK_THIS;
+        }
+    mask_clear(&m, MASK_WORK);
+}
+
 static bool capture_leaf(Capture *c, GError **error)
 {
     Profile *o = c->out;
@@ -252,6 +298,8 @@ static bool capture_leaf(Capture *c, GError **error)
     o->mm_per_pixel = c->scan->mm_per_pixel;
     o->has_stalk = stalk_find(&window, &c->stalk);
     if (o->has_stalk) {
+        if (c->threshold)
+            mend_base(c, &window, &c->stalk);
         o->stalk_end = upright(c, c->stalk.end);
         o->stalk_width = c->stalk.width;
         o->stalk_length = c->stalk.length;

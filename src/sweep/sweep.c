@@ -33,6 +33,29 @@ const Params *sweep_params(const Sweep *s) { return s->params; }
 
 uint64_t sweep_count(const Sweep *s) { return s->count; }
 
+char *sweep_checksum(const Sweep *s)
+{
+    GString *text = g_string_new(NULL);
+    g_string_append_printf(text, "%d %" G_GUINT64_FORMAT " %" G_GUINT64_FORMAT " %d\n", s->mode, s->count, s->sample_seed, s->halton);
+    for (guint i = 0; i < s->axis->len; i++) {
+        const SweepAxis *a = axis_at(s, i);
+        const double number[] = {a->low, a->high, a->step};
+        g_string_append_printf(text, "%d %" G_GUINT64_FORMAT " %d %d", a->kind, a->levels, a->drawn, a->digits);
+        for (gsize k = 0; k < G_N_ELEMENTS(number); k++) {
+            char buffer[G_ASCII_DTOSTR_BUF_SIZE];
+            g_string_append_printf(text, " %s", g_ascii_dtostr(buffer, sizeof buffer, number[k]));
+        }
+        for (uint32_t f = 0; f < a->fields; f++)
+            g_string_append_printf(text, "\n%s", a->field[f].key);
+        for (uint64_t c = 0; a->cell && c < a->levels * a->fields; c++)
+            g_string_append_printf(text, "\n%s", a->cell[c] ? a->cell[c] : "\t");
+        g_string_append_c(text, '\n');
+    }
+    char *sum = g_compute_checksum_for_string(G_CHECKSUM_SHA256, text->str, (gssize)text->len);
+    g_string_free(text, TRUE);
+    return sum;
+}
+
 uint32_t sweep_keys(const Sweep *s)
 {
     uint32_t n = 0;

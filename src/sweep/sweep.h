@@ -59,6 +59,9 @@ const Params *sweep_params(const Sweep *s);
 /* 1 … SWEEP_MOST. */
 uint64_t sweep_count(const Sweep *s);
 
+/* A text that tells sweeps of other variants apart; comments and places of the files don't matter. Free it. */
+char *sweep_checksum(const Sweep *s);
+
 /* The keys of the sweep, in the file's order, those of a table in its columns'. */
 typedef struct {
     const char *key; /* "veins.kill_distance"; "seed" for the run's */

@@ -613,8 +613,7 @@ def test_man():
         holds(source, f"\\fB{key}\\fR")
     for option in re.findall(r"--[a-z]+", run("help", "grow").out):
         holds(source, option)
-    if not shutil.which("man"):
-        raise Skip("no man")
+    need("man")
     for locale in ("C", "C.UTF-8"):
         env = environment(LC_ALL=locale, MANWIDTH="80", MANPAGER="cat")
         shown = subprocess.run(["man", "--warnings", "-l", page], env=env,
@@ -821,8 +820,7 @@ def test_shape_refuses():
 
 
 def test_completion():
-    if not shutil.which("bash"):
-        raise Skip("no bash")
+    need("bash")
     write("completion", run("params", "--format=bash").out)
     done = subprocess.run(["bash", "-n", "completion"], stderr=subprocess.PIPE, check=False)
     same((done.returncode, done.stderr), (0, b""))
@@ -883,8 +881,7 @@ def test_completion_zsh():
         holds(text, f"\n    '{key}:")
     for option in re.findall(r"(?<= )--[a-z]+(?=[ =])", run("help", "grow").out.split("Files:")[0]):
         holds(text, option)
-    if not shutil.which("zsh"):
-        raise Skip("no zsh")
+    need("zsh")
     done = subprocess.run(["zsh", "-fn", write("_venation", text)], stderr=subprocess.PIPE, check=False)
     same((done.returncode, done.stderr), (0, b""))
     program = ("compdef() { :; }; source ./_venation; print -l $_venation_maps; IPREFIX=--set=veins.pattern=; compset() { :; }; "
@@ -899,8 +896,7 @@ def test_completion_fish():
     text = run("params", "--format=fish").out
     for key in keys():
         holds(text, f"\n    {key}=\\t'")
-    if not shutil.which("fish"):
-        raise Skip("no fish")
+    need("fish")
     write("venation.fish", text)
     done = subprocess.run(["fish", "--no-config", "-n", "venation.fish"], stderr=subprocess.PIPE, check=False)
     same((done.returncode, done.stderr), (0, b""))

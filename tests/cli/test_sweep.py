@@ -4,6 +4,7 @@
     test_sweep.py VENATION
 """
 import csv
+import glob
 import hashlib
 import json
 import math
@@ -128,16 +129,37 @@ def test_zip_and_sample():
     same(len({r["veins.kill_distance"] for r in found}), 7)
 
 
+def check_alone(folder, row, keys):
+    """The variant grown by itself with what its row says."""
+    alone = f"alone-{row['index']}"
+    chosen = [word for key in keys for word in ("--set", f"{key}={row[key]}")]
+    result = run("grow", "leaf.ini", "-q", "-o", alone, "--name", row["variant"], "--seed", str(row["seed"]), *chosen)
+    same(result.status, 0, result.err)
+    there = contents(os.path.join(folder, row["folder"]))
+    del there["sweep.json"]
+    same(files(alone), sorted(there))
+    same(contents(alone) == there, True, f"{chosen}")
+
+
 def test_alone_as_in_the_sweep():
     sweep(sweep_file(), "-q", "--cell", "0")
-    row = rows("out/many")[9]
-    result = run("grow", "leaf.ini", "-q", "-o", "alone", "--name", row["variant"], "--seed", str(row["seed"]),
-                 "--set", f"veins.kill_distance={row['veins.kill_distance']}", "--set", f"veins.pattern={row['veins.pattern']}")
-    same(result.status, 0, result.err)
-    there = contents(os.path.join("out/many", row["folder"]))
-    del there["sweep.json"]
-    same(files("alone"), sorted(there))
-    same(contents("alone"), there)
+    check_alone("out/many", rows("out/many")[9], ("veins.kill_distance", "veins.pattern"))
+
+
+def test_alone_as_in_the_sample():
+    """The manifest has what was drawn to the last digit."""
+    keys = {"veins.kill_distance": "uniform(1, 4)", "sources.density": "log-uniform(0.001, 0.02)", "width.exponent": "normal(2.5, 0.3)", "veins.pattern": "choice(open | closed)",
+            "outline.file": "choice(blade.svg; other.svg)", "growth.step": "uniform(2, 5, 1)", "texture.lamina_colour": "choice(#35602b; #447a32; #86ad55)"}
+    write("other.svg", BLADE.replace("-50", "-70"))
+    for sequence in ("random", "halton"):
+        text = f"[sweep]\nparams = leaf.ini\nmode = sample\ncount = 40\nsequence = {sequence}\nsample_seed = 5\nseed = each\n" + "".join(f"{k} = {v}\n" for k, v in keys.items())
+        sweep(sweep_file(text), "-q", "--cell", "0", "-o", sequence, "--shard", "3/13")
+        sweep("many.ini", "-q", "--cell", "0", "-o", sequence, "--collect", status=3)
+        found = [row for row in rows(sequence) if row["outcome"] == "grown"]
+        same([row["index"] for row in found], [2, 15, 28])
+        for row in found:
+            check_alone(sequence, row, keys)
+            shutil.rmtree(f"alone-{row['index']}")
 
 
 def test_what_is_written():
@@ -538,17 +560,20 @@ def peak(*args):
 
 
 def test_memory_does_not_go_with_the_number():
-    """With small cells: a sheet needs as much as it is wide."""
+    """Less than a row of the manifest takes, for each leaf; and a sheet of large cells little more than one of few."""
     with open(VENATION, "rb") as file:
         if b"__asan_init" in file.read():
             raise Skip("a sanitizer keeps what is freed")
-    for few, many, options in ((10, 2000, ["--write", "none", "--cell", "16"]), (10, 300, ["--dataset", "--size", "32", "--cell", "32"])):
+    for few, many, most, options in ((100, 700, 2400, ["--write", "none", "--cell", "32"]), (30, 150, 1600, ["--dataset", "--size", "32", "--cell", "32"]),
+                                     (10, 160, 7000, ["--write", "none", "--cell", "320"])):
         used = []
         for count in (few, many):
             sweep_file(f"[sweep]\nparams = leaf.ini\nseed = from 1 to {count} by 1\n")
-            used.append(peak("many.ini", "-o", f"{count}-{len(options)}", "--set", "growth.final_length=22", *options))
-        if used[1] - used[0] > 8 * 1024:
-            raise AssertionError(f"{used} KiB for {few} and {many}")
+            what = ["many.ini", "-o", f"{count}-{most}", "--set", "growth.final_length=22", *options]
+            whole = peak(*what)
+            used.append(peak(*what, "--collect") if "320" in options else whole)  # growing takes more than such a sheet
+        if used[1] - used[0] > most:
+            raise AssertionError(f"{options}: {used} KiB for {few} and {many}")
 
 
 def test_two_at_once():
@@ -564,6 +589,55 @@ def test_two_at_once():
         raise AssertionError(f"{grown} grown of 24: {told}")
     same(files("out/many"), files("alone"))
     same(contents("out/many") == contents("alone"), True, "two at once")
+
+
+def test_two_of_different_options_at_once():
+    """Begun in the same moment on a folder that is empty, or not there: one goes on, and the other is refused before it writes a byte."""
+    sweep_file(GRID.replace("1; 2; 4", "2"))
+    kinds = (["many.ini"], ["many.ini", "--set", "width.exponent=3"], ["many.ini", "--cell", "64"])
+    alone = []
+    for k, kind in enumerate(kinds):
+        sweep(*kind, "--write", "none", "-q", "-o", f"alone-{k}")
+        alone.append(contents(f"alone-{k}"))
+    chance, won = random.Random(3), [0, 0]
+    for i in range(20):
+        pair = (0, 1 + i % 2)
+        both = []
+        for k in pair:
+            both.append(subprocess.Popen([VENATION, "sweep", *kinds[k], "--write", "none", "-o", f"both-{i}"], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                         env=environment()))
+            time.sleep(chance.choice((0, 0, 0.002, 0.01)))
+        told = [one.communicate(timeout=TIMEOUT)[1].decode() for one in both]
+        same(sorted(one.returncode for one in both), [0, 3], f"{kinds[pair[1]]}: {told}")
+        winner = [one.returncode for one in both].index(0)
+        won[winner] += 1
+        same(told[1 - winner].count("\n"), 1, told)
+        holds(told[1 - winner], f"both-{i}: ")
+        same(contents(f"both-{i}") == alone[pair[winner]], True, f"the winner's leaves alone: {kinds[pair[1]]}")
+    same(sum(won), 20, won)
+
+
+def test_run_at_work_keeps_its_folder():
+    """While it works one of other options is refused, with --replace too; one of the same options helps; one that is dead elsewhere is named."""
+    sweep_file()
+    longer = ["--set", "growth.final_length=200", "--threads", "1", "--write", "none"]
+    process = subprocess.Popen([VENATION, "sweep", "many.ini", "-q", *longer], stdin=subprocess.DEVNULL, env=environment())
+    while process.poll() is None and not (os.path.isdir("out/many") and any(glob.glob("out/many/.venation-*/.settled-*"))):
+        time.sleep(0.01)
+    hidden = [n for n in os.listdir("out/many") if n.startswith(".")]
+    for more in ([], ["--replace"], ["--shard", "1/2"]):
+        refused([*longer, "--set", "width.exponent=3", *more], "another run with other parameters, options or variants", *hidden)
+    write("other.ini", GRID.replace("1; 2; 4", "1; 2; 3"))
+    holds(sweep("other.ini", "-o", "out/many", *longer, status=3).err, "another run with other")
+    sweep("many.ini", *longer, "-q")
+    same(process.wait(TIMEOUT), 0)
+    os.makedirs("out/many/.venation-far-away-7-abcdef/.claim-0123")
+    os.makedirs("out/many/.venation-far-away-7-abcdef/.settled-0123")
+    refused(longer, "another run with other", ".venation-far-away-7-abcdef", "remove that folder")
+    os.rmdir("out/many/.venation-far-away-7-abcdef/.settled-0123")
+    refused(longer, "another run with other", ".venation-far-away-7-abcdef", "remove that folder")
+    shutil.rmtree("out/many/.venation-far-away-7-abcdef")
+    sweep("many.ini", *longer, "-q")
 
 
 def test_run_that_is_dead_elsewhere():

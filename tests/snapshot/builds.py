@@ -121,7 +121,9 @@ def main():
         for number, (compiler, level, options, _) in enumerate(builds, 1):
             name = " ".join([compiler, "-O" + level, *(o.split("=", 1)[1] if o.startswith("-Dc_args") else "-flto" for o in options)])
             if not shutil.which(compiler):
-                print("ok %d - %s # SKIP there is no %s" % (number, name, compiler), flush=True)
+                required = os.environ.get("VENATION_REQUIRE") == "all" and not every
+                bad += required
+                print("%sok %d - %s # %sthere is no %s" % ("not " * required, number, name, "SKIP " * (not required), compiler), flush=True)
                 continue
             begun = time.monotonic()
             try:

@@ -211,6 +211,8 @@ def main(folder, *leaves):
     ran = 0
     for program, there, check in checks:
         if not there:
+            if program in ("assimp", "povray") and os.environ.get("VENATION_REQUIRE") == "all":
+                sys.exit(f"{program} is not installed")
             print(f"{program}: skipped, not installed")
             continue
         for leaf in leaves:

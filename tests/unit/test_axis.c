@@ -248,6 +248,44 @@ static void test_gather(void)
     scan_free(s);
 }
 
+/* A slit beside the petiole that a vein makes, paler than the threshold but not as the ground is, is no part of the outline; one where ground shows is. */
+static void test_pale_base(void)
+{
+    for (uint32_t ground = 0; ground < 2; ground++) {
+        Leaf l;
+        ovate(&l);
+        GPtrArray *all;
+        Scan *s = painted(&l, 33.0, true, 40.0);
+        Vec2 a = place(vec2(0.02, -0.02), 33.0), b = place(vec2(0.02, 0.08), 33.0), d = vec_sub(b, a);
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            Vec2 q = vec2(i % SIDE + 0.5, SIDE - i / SIDE - 0.5);
+            double t = vec_dot(vec_sub(q, a), d) / vec_norm2(d);
+            uint8_t *px = (uint8_t *)s->px + 3 * (gsize)i;
+            if (t > 0.0 && t < 1.0 && fabs(vec_cross(d, vec_sub(q, a))) / sqrt(vec_norm2(d)) < 0.006 * size && px[0] < 200)
+                memset(px, ground ? 240 : 190, 3);
+        }
+        const Profile *p = captured(s, &all);
+        g_test_message("slit of %s: base off by %.3f", ground ? "ground" : "vein", vec_dist(p->base, place(vec2(0.0, 0.0), 33.0)) / size);
+        g_assert_cmpint(polygon_contains(p->outline, place(vec2(0.02, 0.05), 33.0)), ==, !ground);
+        g_assert_cmpfloat(vec_dist(p->base, place(vec2(0.0, 0.0), 33.0)), <, 0.05 * size);
+        g_ptr_array_free(all, TRUE);
+        scan_free(s);
+    }
+    char *path = g_test_build_filename(G_TEST_DIST, "..", "..", "params", "scans", "grape.jpg", NULL);
+    Scan *s = scan_read(path, 0, NULL);
+    g_assert_nonnull(s);
+    GPtrArray *all;
+    const Profile *p = captured(s, &all);
+    static const Vec2 in[] = {{454, 436}, {444, 418}, {437, 424}}; /* where midvein and lateral veins are pale, rows from the top */
+    for (uint32_t k = 0; k < G_N_ELEMENTS(in); k++)
+        g_assert_true(polygon_contains(p->outline, vec2(in[k].x, s->height - in[k].y)));
+    g_assert_false(polygon_contains(p->outline, vec2(440, s->height - 395.0)));
+    g_assert_false(polygon_contains(p->outline, vec2(475, s->height - 395.0)));
+    g_ptr_array_free(all, TRUE);
+    scan_free(s);
+    g_free(path);
+}
+
 /* Of an ellipse: the longer axis, its ends, and the far side of any point. */
 static void test_ellipse(void)
 {
@@ -282,5 +320,6 @@ int main(int argc, char **argv)
     g_test_add_func("/axis/ellipse", test_ellipse);
     g_test_add_func("/axis/shapes", test_shapes);
     g_test_add_func("/axis/gather", test_gather);
+    g_test_add_func("/axis/pale-base", test_pale_base);
     return g_test_run();
 }

@@ -91,10 +91,13 @@ static PaintStyle green(void)
     return (PaintStyle){.lamina = {0.0f, 0.2f, 1.0f}, .vein = {1.0f, 0.214041140f, 0.0f}};
 }
 
-/* Runs a command and returns its output; skips the test when the program is not there. */
+/* Runs a command and returns its output; NULL when the program is not there, so that the test skips; it fails where VENATION_REQUIRE is all. */
 static char *output_of(const char *const *argv)
 {
     char *out = NULL, *err = NULL, *program = g_find_program_in_path(argv[0]);
+    gboolean required = g_strcmp0(g_getenv("VENATION_REQUIRE"), "all") == 0;
+    if (program == NULL && required)
+        g_error("%s is not installed", argv[0]);
     if (program == NULL)
         return NULL;
     g_free(program);
@@ -102,7 +105,7 @@ static char *output_of(const char *const *argv)
     GError *error = NULL;
     g_spawn_sync(NULL, (char **)argv, NULL, G_SPAWN_SEARCH_PATH, NULL, NULL, &out, &err, &status, &error);
     g_assert_no_error(error);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 77 && !required) {
         g_clear_pointer(&out, g_free);
     } else if (status != 0) {
         g_test_message("%s: %s%s", argv[0], out, err);

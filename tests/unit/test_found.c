@@ -317,6 +317,63 @@ static void test_petiole(void)
     polygon_free(outline);
 }
 
+/* Veins go on beyond what was eaten: a hole over the midvein, or a bite from the margin into it, where the outline may not be left. */
+static void check_eaten(bool bite, double reach, double contrast, double noise)
+{
+    Polygon *whole = ellipse();
+    Vec2 v[240], middle = vec2(560, 350);
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < whole->n; i++) {
+        bool cut = bite && whole->v[i].y < 350 && fabs(whole->v[i].x - middle.x) < reach;
+        if (!cut)
+            v[n++] = whole->v[i];
+        else if (fabs(whole->v[i - 1].x - middle.x) >= reach) {
+            double way = whole->v[i - 1].x < middle.x ? -1.0 : 1.0;
+            v[n++] = vec2(middle.x + way * reach, 375);
+            v[n++] = vec2(middle.x - way * reach, 375);
+        }
+    }
+    Polygon *outline = polygon_new(v, n);
+    Drawing *truth = pinnate();
+    double *cover = covered(truth, 0.3);
+    Scan *s = painted(outline, cover, 3, contrast, noise);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; !bite && x < W; x++)
+            if (vec_dist(vec2(x + 0.5, H - y - 0.5), middle) < reach)
+                memset((uint8_t *)s->px + ((gsize)y * W + (gsize)x) * 3, 245, 3);
+    FoundDef def = found_def_default();
+    Drawing *d = found(s, outline, &def);
+    FoundScore score = found_score(d, truth, 0.006 * 900);
+    g_test_message("%s of %g: %u primaries, %u secondaries, precision %.3f, recall %.3f", bite ? "bite" : "hole", 2 * reach, count_order(d, 1),
+                   count_order(d, 2), score.precision, score.recall);
+    g_assert_cmpuint(count_order(d, 1), ==, bite ? 2 : 1);
+    g_assert_cmpfloat(d->vein[0].point[0].x, <, 120);
+    g_assert_cmpfloat(d->vein[bite].point[d->vein[bite].n - 1].x, >, 940);
+    g_assert_cmpfloat(score.precision, >, reach > 60 ? 0.84 : 0.9);
+    g_assert_cmpfloat(score.recall, >, 0.9);
+    for (uint32_t k = 0; k <= bite; k++)
+        for (uint32_t i = 0; i < d->vein[k].n; i++) {
+            Vec2 q = d->vein[k].point[i];
+            g_assert_cmpfloat(fabs(q.y - 350), <, 4.0); /* straight ahead, not round it */
+            g_assert_true(!bite || fabs(q.x - middle.x) > reach - 6.0);
+            if (i >= 3 && i + 3 < d->vein[k].n)
+                g_assert_cmpfloat(d->vein[k].width[i], >, 3.0);
+        }
+    drawing_free(d);
+    drawing_free(truth);
+    scan_free(s);
+    g_free(cover);
+    polygon_free(outline);
+    polygon_free(whole);
+}
+
+static void test_eaten(void)
+{
+    check_eaten(false, 55, -35, 8.0);
+    check_eaten(false, 75, 40, 4.0);
+    check_eaten(true, 40, -35, 6.0);
+}
+
 /* Lines side by side: along a strip, or from end to end of a lance, where some leave the middle one late. Each is found whole, by its order. */
 static void check_parallel(uint32_t k, double contrast, double noise)
 {
@@ -687,6 +744,7 @@ int main(int argc, char **argv)
     g_test_add_func("/found/pinnate", test_pinnate);
     g_test_add_func("/found/palmate", test_palmate);
     g_test_add_func("/found/petiole", test_petiole);
+    g_test_add_func("/found/eaten", test_eaten);
     g_test_add_func("/found/parallel", test_parallel);
     g_test_add_func("/found/comb", test_comb);
     g_test_add_func("/found/blank", test_blank);

@@ -505,6 +505,19 @@ static void test_narrow(void)
     fixture_clear(&f);
 }
 
+/* Two rows of 24 cells that would be 40 000 pixels wide: smaller cells, no wider file than viewers read. */
+static void test_wide(void)
+{
+    Fixture f = make_sweep("veins.kill_distance = 1; 2\nwidth.exponent = from 1 to 5 in 24\n");
+    put_grown(&f, 0, 40, 40);
+    write_sheet(&f, 2048);
+    cairo_surface_t *png = read_png(f.dir, "sheet.png");
+    g_assert_cmpint(cairo_image_surface_get_width(png), >, 15000);
+    g_assert_cmpint(cairo_image_surface_get_width(png), <=, 20000);
+    cairo_surface_destroy(png);
+    fixture_clear(&f);
+}
+
 static char *captions(const char *sweep, gboolean specimen)
 {
     Fixture f = make_sweep(sweep);
@@ -739,6 +752,7 @@ int main(int argc, char **argv)
     g_test_add_func("/sheet/figure", test_figure);
     g_test_add_func("/sheet/matrix", test_matrix);
     g_test_add_func("/sheet/narrow", test_narrow);
+    g_test_add_func("/sheet/wide", test_wide);
     g_test_add_func("/sheet/told", test_told);
     g_test_add_func("/sheet/many", test_many);
     g_test_add_func("/sheet/png-is-svg", test_png_is_svg);
