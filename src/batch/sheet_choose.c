@@ -47,20 +47,23 @@ static double difference(const Value *a, const Value *b)
     return sum / 765.0;
 }
 
-/* Mean over all pairs; of numbers as part of the largest: 2 and 4 are as far apart as 200 and 400. */
+/* Mean over all pairs; of numbers as part of the largest, or of what they span where some are below 0: 2 and 4 are as far apart as 200 and 400. */
 static double mean_difference(const Value *value, guint n)
 {
-    double sum = 0.0, largest = 0.0;
+    double sum = 0.0, least = 0.0, most = 0.0; /* with 0 */
     bool numbers = true;
     for (guint i = 0; i < n; i++) {
         numbers &= value[i].number;
-        largest = MAX(largest, fabs(value[i].value));
+        least = MIN(least, value[i].value);
+        most = MAX(most, value[i].value);
         for (guint j = 0; j < i; j++)
             sum += difference(&value[i], &value[j]);
     }
     double pairs = 0.5 * n * (n - 1.0);
-    return sum <= 0.0 ? 0.0 : numbers ? sum / largest / pairs : sum / pairs;
+    return sum <= 0.0 ? 0.0 : numbers ? sum / (most - least) / pairs : sum / pairs;
 }
+
+static bool is_coloured(const ParamInfo *info) { return strcmp(info->section, "specimen") == 0 || strcmp(info->section, "texture") == 0; }
 
 /* Names that the user gave come first; lists of points say little; of colours and light the picture of the veins alone shows nothing. */
 static int rank(const SheetPlan *p, const SheetItem *item)
@@ -70,8 +73,7 @@ static int rank(const SheetPlan *p, const SheetItem *item)
     if (key.id < 0)
         return 1;
     const ParamInfo *info = param_info((ParamId)key.id);
-    bool coloured = strcmp(info->section, "specimen") == 0 || strcmp(info->section, "texture") == 0;
-    bool seen = (p->specimen && coloured) || !g_strv_contains(unseen, info->section);
+    bool seen = (p->specimen && is_coloured(info)) || !g_strv_contains(unseen, info->section);
     return info->type == TYPE_POINTS ? 3 : seen ? 1 : 2;
 }
 
@@ -134,6 +136,9 @@ static Candidate judge(const SheetPlan *p, const SheetItem *item, guint at, cons
         c.value[i] = value_of(p, item, &v[i]);
     c.rank = rank(p, item);
     c.apart = mean_difference(c.value, n);
+    int id = sweep_key(p->s, item->key).id;
+    if (id >= 0 && is_coloured(param_info((ParamId)id))) /* plain to see; how the leaf grew wants telling */
+        c.apart *= 0.5;
     return c;
 }
 

@@ -2,54 +2,7 @@
 
 #include <glib.h>
 
-static uint32_t clamp_pixel(double v, uint32_t lo, uint32_t hi)
-{
-    return !(v > lo) ? lo : v >= hi ? hi : (uint32_t)v;
-}
-
-static void between(double a, double b, uint32_t lo, uint32_t hi, uint32_t *first, uint32_t *last)
-{
-    *first = clamp_pixel(a, lo, hi);
-    *last = clamp_pixel(b, lo, hi);
-    if (*last < *first)
-        *last = *first;
-}
-
-void pixels_touched(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last)
-{
-    if (s.lo > s.hi) {
-        *first = *last = x0;
-        return;
-    }
-    between(floor(s.lo), ceil(s.hi), x0, x1, first, last);
-}
-
-void pixels_inside(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last)
-{
-    if (s.lo > s.hi) {
-        *first = *last = x0;
-        return;
-    }
-    between(ceil(s.lo), floor(s.hi), x0, x1, first, last);
-}
-
-void pixels_centred(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last)
-{
-    s.lo += 0.5;
-    s.hi += 0.5;
-    if (s.lo > s.hi) {
-        *first = *last = x0;
-        return;
-    }
-    /* a centre at i + 0.5 lies in lo … hi when i + 1 lies in lo + 0.5 … hi + 0.5 */
-    between(ceil(s.lo) - 1.0, floor(s.hi), x0, x1, first, last);
-}
-
-void pixel_rows(const Capsule *k, uint32_t y0, uint32_t y1, uint32_t *first, uint32_t *last)
-{
-    Box2 box = capsule_box(k);
-    pixels_touched((Span){box.y0, box.y1}, y0, y1, first, last);
-}
+#include "image/pixels.h"
 
 TileBox bins_tile(const Bins *b, uint32_t tile)
 {

@@ -25,13 +25,4 @@ typedef struct {
 
 TileBox bins_tile(const Bins *b, uint32_t tile);
 
-/* Pixels [*first, *last) of lo … hi (pixel units, the pixel i covers i … i + 1) that lie in [x0, x1): those touched,
- * wholly inside, and those whose centres are inside. */
-void pixels_touched(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
-void pixels_inside(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
-void pixels_centred(Span s, uint32_t x0, uint32_t x1, uint32_t *first, uint32_t *last);
-
-/* Pixel rows of [y0, y1) that the stroke touches. */
-void pixel_rows(const Capsule *k, uint32_t y0, uint32_t y1, uint32_t *first, uint32_t *last);
-
 #endif

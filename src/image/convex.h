@@ -5,6 +5,7 @@
 #define IMAGE_CONVEX_H
 
 #include "image/capsule.h"
+#include "image/rings.h"
 
 /* Unit vectors, CIRCLE of them, evenly around the circle. */
 enum { CIRCLE = 4096 };
@@ -14,13 +15,6 @@ typedef struct {
 } Circle;
 
 Circle *circle_new(void);
-
-/* Convex polygons, one after the other. */
-typedef struct {
-    Vec2 *v;
-    uint32_t *end; /* of each polygon in v */
-    uint32_t n_v, cap_v, n, cap;
-} Rings;
 
 typedef struct {
     const Circle *circle;
@@ -56,9 +50,7 @@ double union_area(Union *u);
 /* The same of what lies within a polygon, convex or not, of n points in image coordinates; `corner` is the pixel's. */
 double union_area_within(Union *u, const Vec2 *v, uint32_t n, Vec2 corner);
 
-/* Puts into `out` the part of a polygon, convex or not, within a box: out->n is 0 when there is none. Where it leaves the
- * box it runs along its sides, so that turns around points within stay what they are. `spare` is scratch. */
-void ring_within(const Vec2 *v, uint32_t n, Box2 box, Rings *out, Rings *spare);
-void rings_clear(Rings *r);
+/* Cuts the polygon in `ping`, which lies in the pixel 0 … 1, with the half-plane p · normal <= bound. FALSE when nothing is left. */
+bool union_cut(Union *u, Vec2 normal, double bound);
 
 #endif

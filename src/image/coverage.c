@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "image/painter.h"
+#include "image/pixels.h"
 
 /* ---- veins ---- */
 

@@ -2,6 +2,7 @@
 #include <glib.h>
 
 #include "image/painter.h"
+#include "image/pixels.h"
 
 /* A pixel belongs to a vein when its centre lies in the vein drawn at least one pixel wide: so a thin vein gives an
  * unbroken line of pixels, and a wide one no more than its own. Just outside it lies beside the vein; such pixels take

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "image/painter.h"
+#include "image/pixels.h"
+#include "image/wide.h"
 
 /* The profile over u, distance from the axis in radii: an arch over the vein and a fillet that runs out to the blade
  * FILLET radii beyond its edge, joined smoothly at a height of `foot`. */
@@ -72,104 +74,147 @@ static Capsule ridge_shape(uint32_t i, const void *user)
     return ridge_area(&r);
 }
 
-static double profile(double u)
+/* ---- pixel by pixel ---- */
+
+/* Pixels of a row are worked on together, in loops that vector instructions take in: a multiple of LANES of them, with room for those beyond a tile. */
+enum { LANES = 8, ROW = TILE + LANES };
+
+/* The bulges at the pixels of a tile: of the highest vein, and of the highest other one. */
+typedef struct {
+    uint32_t vein[TILE * ROW];
+    float first[TILE * ROW], second[TILE * ROW]; /* segments */
+    float crease[TILE * ROW], nearness[TILE * ROW];
+} Bulges;
+
+/* Veins that meet merge in a fillet, not in a crease: a maximum that is rounded where the two are about equal. */
+static inline float bulge_height(float highest, float other)
 {
-    if (u <= 1.0)
-        return 1.0 - (1.0 - foot) * u * u;
-    double rest = (1.0 + fillet - u) / fillet;
-    return rest > 0.0 ? foot * rest * rest : 0.0;
+    double first = (double)highest, second = (double)other, gap = first - second, round = 0.6 * second;
+    return (float)(0.5 * (first + second + sqrt(gap * gap + round * round)));
+}
+
+static inline double between(const double end[2], double t)
+{
+    return end[0] + (end[1] - end[0]) * t;
+}
+
+static inline double profile(double u)
+{
+    double rest = (1.0 + fillet - u) / fillet, arch = 1.0 - (1.0 - foot) * u * u, flank = rest > 0.0 ? foot * rest * rest : 0.0;
+    return u <= 1.0 ? arch : flank;
 }
 
 /* How much of a vein a place beside it sees; the fourth power looks smooth under a root (surface.c). */
-static double crease(double u)
+static inline double crease(double u)
 {
     double fall = (crease_reach - u) / (crease_reach - crease_full);
     fall = fall < 1.0 ? fall * fall : 1.0;
     return fall * fall;
 }
 
-/* The bulges at one pixel: of the highest vein, and of the highest other one. */
-typedef struct {
-    uint32_t vein;
-    float first, second;   /* segments */
-    float crease, nearness;
-} Bulge;
-
-static void bulge_add(Bulge *b, uint32_t vein, float height)
+/* Of n pixels in a row, the first one's centre at `at`: where along the axis the nearest cross-section lies, 0 … 1, and how far from the axis the
+ * pixel is; what capsule_distance has, without branches. */
+static inline void measure(const Capsule *k, Vec2 at, uint32_t n, double *restrict t, double *restrict from_axis)
 {
-    if (height <= 0.0f)
-        return;
-    if (vein == b->vein) {
-        b->first = MAX(b->first, height);
-    } else if (height > b->first) {
-        b->second = b->first;
-        b->first = height;
-        b->vein = vein;
-    } else {
-        b->second = MAX(b->second, height);
+    double qy = at.y - k->a.y, by = at.y - k->b.y, side = k->length * k->c, whole = side > 0.0 ? side : 1.0;
+    for (uint32_t i = 0; i < n; i++) {
+        double px = at.x + i, qx = px - k->a.x, x = qx * k->d.x + qy * k->d.y, y = k->d.x * qy - k->d.y * qx;
+        y = y < 0.0 ? -y : y;
+        double along = x * k->c - y * k->s;
+        bool beyond_a = !(along > 0.0), beyond_b = along >= side;
+        double ex = beyond_a ? qx : px - k->b.x, ey = beyond_a ? qy : by, end = sqrt(ex * ex + ey * ey) - (beyond_a ? k->ra : k->rb);
+        double beside = x * k->s + y * k->c - k->ra, place = beyond_b ? 1.0 : along / whole, distance = beyond_b ? end : beside;
+        place = beyond_a ? 0.0 : place;
+        distance = beyond_a ? end : distance;
+        t[i] = place;
+        from_axis[i] = distance + (k->ra + (k->rb - k->ra) * place);
     }
 }
 
-/* Veins that meet merge in a fillet, not in a crease: a maximum that is rounded where the two are about equal. */
-static float bulge_height(const Bulge *b)
+/* Of the n pixels from number `at` on, those from number `count` on are none. */
+static inline void lift(const Ridge *r, const double *t, const double *from_axis, uint32_t n, uint32_t count, Bulges *b, uint32_t at)
 {
-    double first = (double)b->first, second = (double)b->second, gap = first - second, round = 0.6 * second;
-    return (float)(0.5 * (first + second + sqrt(gap * gap + round * round)));
+    float height[ROW];
+    uint32_t *restrict vein = b->vein + at;
+    float *restrict first = b->first + at, *restrict second = b->second + at;
+    for (uint32_t i = 0; i < n; i++) {
+        float h = (float)(between(r->height, t[i]) * profile(from_axis[i] * between(r->gain, t[i])));
+        height[i] = i < count && h > 0.0f ? h : 0.0f;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        float h = height[i], one = first[i], two = second[i], least = h < one ? h : one;
+        second[i] = vein[i] == r->vein || two > least ? two : least;
+        vein[i] = h > one ? r->vein : vein[i];
+        first[i] = h > one ? h : one;
+    }
 }
 
-static double between(const double end[2], double t)
+/* What a larger vein does beside it. */
+static inline void surround(const Ridge *r, const double *t, const double *from_axis, uint32_t n, uint32_t count, Bulges *b, uint32_t at)
 {
-    return end[0] + (end[1] - end[0]) * t;
+    float *restrict shade = b->crease + at, *restrict nearness = b->nearness + at;
+    for (uint32_t i = 0; i < n; i++) {
+        double u = from_axis[i] * between(r->gain, t[i]), deep = between(r->crease, t[i]) * crease(u);
+        float seen = i < count && u < crease_reach ? (float)deep : 0.0f;
+        shade[i] = shade[i] > seen ? shade[i] : seen;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        double v = from_axis[i] * between(r->near_gain, t[i]), rest = 1.0 - v * v, near = between(r->nearness, t[i]) * rest * rest;
+        float felt = i < count && v < 1.0 ? (float)near : 0.0f;
+        nearness[i] = nearness[i] > felt ? nearness[i] : felt;
+    }
 }
 
-static void lift(const Ridge *r, Vec2 at, Bulge *b)
+WIDE static void raise_ridge(const Ridge *r, TileBox box, Bulges *b)
 {
-    double t, distance = capsule_distance(&r->shape, at, &t), from_axis = distance + capsule_radius(&r->shape, t);
-    double u = from_axis * between(r->gain, t);
-    if (u < 1.0 + fillet)
-        bulge_add(b, r->vein, (float)(between(r->height, t) * profile(u)));
-    if (!r->large)
-        return;
-    if (u < crease_reach)
-        b->crease = MAX(b->crease, (float)(between(r->crease, t) * crease(u)));
-    double v = from_axis * between(r->near_gain, t), rest = 1.0 - v * v;
-    if (v < 1.0)
-        b->nearness = MAX(b->nearness, (float)(between(r->nearness, t) * rest * rest));
+    Capsule area = ridge_area(r);
+    uint32_t y0, y1, x0, x1;
+    pixel_rows(&area, box.y0, box.y1, &y0, &y1);
+    for (uint32_t y = y0; y < y1; y++) {
+        pixels_centred(capsule_chord(&area, y + 0.5), box.x0, box.x1, &x0, &x1);
+        if (x0 == x1)
+            continue;
+        double t[ROW], from_axis[ROW];
+        uint32_t at = (y - box.y0) * ROW + x0 - box.x0, count = x1 - x0, n = (count + LANES - 1) / LANES * LANES;
+        measure(&r->shape, vec2(x0 + 0.5, y + 0.5), n, t, from_axis);
+        lift(r, t, from_axis, n, count, b, at);
+        if (r->large)
+            surround(r, t, from_axis, n, count, b, at);
+    }
 }
 
-static void raise_tile(const Painter *p, uint32_t tile, Bulge *bulge)
+WIDE static void settle_tile(const Painter *p, TileBox box, const Bulges *b)
+{
+    for (uint32_t y = box.y0; y < box.y1; y++) {
+        float *restrict height = field_row(p, &p->bulge, y) + box.x0;
+        uint32_t at = (y - box.y0) * ROW, n = box.x1 - box.x0;
+        for (uint32_t i = 0; i < n; i++)
+            height[i] = bulge_height(b->first[at + i], b->second[at + i]);
+        memcpy(field_row(p, &p->crease, y) + box.x0, b->crease + at, n * sizeof(float));
+        memcpy(field_row(p, &p->nearness, y) + box.x0, b->nearness + at, n * sizeof(float));
+    }
+}
+
+static void raise_tile(const Painter *p, uint32_t tile, Bulges *b)
 {
     TileBox box = bins_tile(&p->ridge_bins, tile);
-    memset(bulge, 0, TILE * TILE * sizeof *bulge);
-    for (uint32_t i = p->ridge_bins.start[tile]; i < p->ridge_bins.start[tile + 1]; i++) {
-        uint32_t y0, y1;
+    uint32_t from = p->ridge_bins.start[tile], to = p->ridge_bins.start[tile + 1];
+    if (from == to)
+        return;
+    memset(b, 0, sizeof *b);
+    for (uint32_t i = from; i < to; i++) {
         Ridge r = ridge_of(p, &p->ridges->v[p->ridge_bins.item[i]]);
-        Capsule area = ridge_area(&r);
-        pixel_rows(&area, box.y0, box.y1, &y0, &y1);
-        for (uint32_t y = y0; y < y1; y++) {
-            uint32_t x0, x1;
-            pixels_centred(capsule_chord(&area, y + 0.5), box.x0, box.x1, &x0, &x1);
-            for (uint32_t x = x0; x < x1; x++)
-                lift(&r, vec2(x + 0.5, y + 0.5), &bulge[(y - box.y0) * TILE + x - box.x0]);
-        }
+        raise_ridge(&r, box, b);
     }
-    for (uint32_t y = box.y0; y < box.y1; y++) {
-        float *height = field_row(p, &p->bulge, y), *crease = field_row(p, &p->crease, y), *nearness = field_row(p, &p->nearness, y);
-        for (uint32_t x = box.x0; x < box.x1; x++) {
-            const Bulge *b = &bulge[(y - box.y0) * TILE + x - box.x0];
-            height[x] = bulge_height(b);
-            crease[x] = b->crease;
-            nearness[x] = b->nearness;
-        }
-    }
+    settle_tile(p, box, b);
 }
 
 static void raise_tiles(uint32_t first, uint32_t last, void *user)
 {
-    Bulge *bulge = g_new(Bulge, TILE * TILE);
+    Bulges *b = g_new(Bulges, 1);
     for (uint32_t tile = first; tile < last; tile++)
-        raise_tile(user, tile, bulge);
-    g_free(bulge);
+        raise_tile(user, tile, b);
+    g_free(b);
 }
 
 void painter_ridges_ready(Painter *p)

@@ -3,6 +3,7 @@
 
 #include "image/blur.h"
 #include "image/painter.h"
+#include "image/wide.h"
 
 /* Depth of the blade between veins below its veins, segments: it arches towards the sunny side. */
 static double arch_depth(const Painter *p)
@@ -33,48 +34,60 @@ enum { ARCH_ONE = 1 << 24 }; /* stands for 1 in whole numbers */
 
 typedef struct {
     Painter *p;
+    uint32_t from; /* row that both begin with */
     int32_t *arch, *blade;
 } Arch;
 
 /* Steep beside the veins, level in the middle of a mesh. */
+WIDE static void arch_stretch(const float *restrict away, const float *restrict blade, uint32_t n, double gain, int32_t *restrict arch, int32_t *restrict in)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double rest = 1.0 - clamped((double)away[i] * gain, 0.0, 1.0);
+        int32_t a = (int32_t)(ARCH_ONE * (1.0 - rest * rest));
+        arch[i] = blade[i] > 0.0f ? a : 0;
+        in[i] = blade[i] > 0.0f ? ARCH_ONE : 0;
+    }
+}
+
 static void arch_row(uint32_t y, void *user)
 {
     const Arch *a = user;
     const Painter *p = a->p;
-    const float *away = field_row(p, &p->away, y), *blade = field_row(p, &p->blade, y);
-    gsize row = (gsize)(y - p->top) * p->width;
+    gsize row = (gsize)(y - a->from) * p->width;
     double gain = 1.0 / (0.5 * p->spacing * p->frame.scale);
-    for (uint32_t x = 0; x < p->width; x++) {
-        double rest = 1.0 - CLAMP((double)away[x] * gain, 0.0, 1.0);
-        bool in = blade[x] > 0.0f;
-        a->blade[row + x] = in ? ARCH_ONE : 0;
-        a->arch[row + x] = in ? (int32_t)(ARCH_ONE * (1.0 - rest * rest)) : 0;
+    arch_stretch(field_row(p, &p->away, y), field_row(p, &p->blade, y), p->width, gain, a->arch + row, a->blade + row);
+}
+
+WIDE static void settle_stretch(const int32_t *restrict arch, const int32_t *restrict blade, uint32_t n, float *restrict out)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        float part = (float)((double)arch[i] / (double)(blade[i] > 0 ? blade[i] : 1));
+        out[i] = blade[i] > 0 ? part : out[i];
     }
 }
 
 static void settle_row(uint32_t y, void *user)
 {
     const Arch *a = user;
-    const Painter *p = a->p;
-    float *out = field_row(p, &p->arch, y);
-    gsize row = (gsize)(y - p->top) * p->width;
-    for (uint32_t x = 0; x < p->width; x++)
-        if (a->blade[row + x] > 0)
-            out[x] = (float)((double)a->arch[row + x] / (double)a->blade[row + x]);
+    gsize row = (gsize)(y - a->from) * a->p->width;
+    settle_stretch(a->arch + row, a->blade + row, a->p->width, field_row(a->p, &a->p->arch, y));
 }
 
+/* Of the painted rows, the ones that normals look at around them, and what specimens need. */
 const float *painter_arch(Painter *p)
 {
     painter_away(p);
-    uint32_t from = field_begin(p, &p->arch);
-    if (from == p->bottom)
+    uint32_t around = 1 + p->surround, reach = around + arch_reach(p);
+    if (field_begin(p, &p->arch) == p->bottom)
         return p->arch.px;
-    gsize n = (gsize)p->width * (p->bottom - p->top);
-    Arch a = {p, g_new(int32_t, n), g_new(int32_t, n)};
-    painter_rows(p, p->top, p->bottom, arch_row, &a);
-    image_blur(p->pool, a.arch, p->width, p->bottom - p->top, arch_blur(p));
-    image_blur(p->pool, a.blade, p->width, p->bottom - p->top, arch_blur(p));
-    painter_rows(p, p->top, p->bottom, settle_row, &a);
+    uint32_t y0 = p->y0 > p->top + around ? p->y0 - around : p->top, y1 = MIN(p->y1 + around, p->bottom);
+    uint32_t from = p->y0 > p->top + reach ? p->y0 - reach : p->top, rows = MIN(p->y1 + reach, p->bottom) - from;
+    gsize n = (gsize)p->width * rows;
+    Arch a = {p, from, g_new(int32_t, n), g_new(int32_t, n)};
+    painter_rows(p, from, from + rows, arch_row, &a);
+    image_blur(p->pool, a.arch, p->width, rows, arch_blur(p));
+    image_blur(p->pool, a.blade, p->width, rows, arch_blur(p));
+    painter_rows(p, y0, y1, settle_row, &a);
     g_free(a.arch);
     g_free(a.blade);
     return p->arch.px;

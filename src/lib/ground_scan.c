@@ -66,10 +66,21 @@ void ground_scan_free(GroundScan *sheet)
 
 /* ---- one leaf ---- */
 
-/* Its own, as it becomes a texture. */
-static gboolean copy_scan(const Params *p, ParamId id, const Scan *from, Scan **to, GError **error)
+/* What may be looked at around a leaf: of its longer side, and pixels. */
+#define AROUND_SHARE 0.25
+#define AROUND_LEAST 128.0
+
+/* Its own, as it becomes a texture; of a leaf that was found already only what lies around it. */
+static gboolean copy_scan(const Params *p, ParamId id, const Scan *from, const Profile *leaf, Scan **to, GError **error)
 {
-    *to = from ? scan_copy(from) : NULL;
+    if (from && leaf) {
+        Box2 b = leaf->outline->box;
+        double around = AROUND_SHARE * MAX(b.x1 - b.x0, b.y1 - b.y0) + AROUND_LEAST, top = from->height - b.y1 - around;
+        *to = scan_copy_part(from, (uint32_t)MAX(0.0, b.x0 - around), (uint32_t)MAX(0.0, top), (uint32_t)MAX(0.0, b.x1 + around),
+                             (uint32_t)MAX(0.0, from->height - b.y0 + around));
+    } else {
+        *to = from ? scan_copy(from) : NULL;
+    }
     if (from && !*to)
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE, "%s: no memory for another copy of the image", params_text(p, id));
     return !from || *to;
@@ -80,5 +91,13 @@ gboolean ground_read_scans(Ground *g, const Params *p, const GroundScan *sheet, 
     if (!sheet)
         return read_scan(p, PARAM_SCAN_FILE, &g->scan, error) && read_back(p, &g->back, back_profiles, error);
     *back_profiles = sheet->back_profile ? g_ptr_array_ref(sheet->back_profile) : NULL;
-    return copy_scan(p, PARAM_SCAN_FILE, sheet->scan, &g->scan, error) && copy_scan(p, PARAM_SCAN_BACK, sheet->back, &g->back, error);
+    gint64 which = params_integer(p, PARAM_SCAN_LEAF);
+    uint32_t base, tip;
+    params_list(p, PARAM_SCAN_BASE, &base);
+    params_list(p, PARAM_SCAN_TIP, &tip);
+    bool own = base || tip || params_choice(p, PARAM_SCAN_METHOD) != 0 || *params_text(p, PARAM_OUTLINE_FILE) || *params_text(p, PARAM_OUTLINE_PATH) ||
+               which > sheet->profile->len;
+    const Profile *leaf = own ? NULL : sheet->profile->pdata[which - 1]; /* what it isn't when it was given away */
+    return copy_scan(p, PARAM_SCAN_FILE, sheet->scan, leaf, &g->scan, error) &&
+           copy_scan(p, PARAM_SCAN_BACK, sheet->back, NULL, &g->back, error);
 }

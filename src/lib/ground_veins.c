@@ -61,6 +61,9 @@ static gboolean look_for_veins(Ground *g, const Params *p, GError **error)
     if (!g->drawing)
         return ground_blame(p, PARAM_SCAN_FILE, error);
     g->found = true;
+    if (g->drawing->n == 0)
+        g_string_append_printf(g->note, "%s: no vein stands out from the blade; scan.vein_sensitivity above %g finds fainter ones, veins.drawing takes drawn ones\n",
+                               params_text(p, PARAM_SCAN_FILE), def.sensitivity);
     drawing_to_leaf(g->drawing, g->base, g->tip);
     return TRUE;
 }

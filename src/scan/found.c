@@ -21,7 +21,7 @@ static const double widens = 1.6;            /* mean width farther on over that 
 static const uint32_t cut_back = 4;          /* … and pixels of its way to that aren't its own … */
 static const uint32_t least_run = 16;        /* … seen over so many points to both sides */
 static const double least_bite = 0.02;       /* of the leaf's length: a vein that leaves the outline for more ends there and begins anew */
-static const uint32_t least_kin = 60, most_dismissed = 60;
+static const uint32_t least_kin = 40, most_dismissed = 60;
 enum { MOST_VEINS = 4000 };                  /* with those dismissed; a palmate leaf of many secondaries has a thousand */
 
 FoundDef found_def_default(void) { return (FoundDef){.orders = 2, .sensitivity = 0.5}; }

@@ -24,13 +24,17 @@ Scan *scan_new(uint32_t width, uint32_t height, uint32_t channels, uint32_t dept
     return s;
 }
 
-Scan *scan_copy(const Scan *s)
+Scan *scan_copy(const Scan *s) { return scan_copy_part(s, 0, 0, s->width, s->height); }
+
+Scan *scan_copy_part(const Scan *s, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1)
 {
     Scan *copy = scan_new(s->width, s->height, s->channels, s->depth);
     if (!copy)
         return NULL;
-    void *px = copy->px;
-    memcpy(px, s->px, (gsize)s->width * s->height * s->channels * s->depth / 8);
+    gsize pixel = (gsize)s->channels * s->depth / 8, row = pixel * s->width;
+    char *px = copy->px;
+    for (gsize y = y0; y < MIN(y1, s->height) && x0 < MIN(x1, s->width); y++)
+        memcpy(px + y * row + x0 * pixel, (const char *)s->px + y * row + x0 * pixel, (MIN(x1, s->width) - x0) * pixel);
     *copy = *s;
     copy->px = px;
     return copy;

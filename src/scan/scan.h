@@ -39,6 +39,9 @@ Scan *scan_read(const char *path, uint64_t max_pixels, GError **error);
 /* An image of zeros; NULL when there is no memory for it. */
 Scan *scan_new(uint32_t width, uint32_t height, uint32_t channels, uint32_t depth);
 Scan *scan_copy(const Scan *s); /* NULL likewise */
+
+/* The same where only columns x0 … x1 - 1 of rows y0 … y1 - 1 are copied, and the rest is 0 and takes no memory where the system hands out empty pages. */
+Scan *scan_copy_part(const Scan *s, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1);
 void scan_free(Scan *s);
 
 static inline uint32_t scan_sample(const Scan *s, uint32_t x, uint32_t y, uint32_t channel)

@@ -37,7 +37,7 @@ static bool grow(Simulation *s, uint32_t v, Vec2 direction, bool looked)
     uint32_t child = veins_add(&s->veins, p, v, s->blade->step);
     if (s->blade->moving)
         s->veins.material[child] = blade_material(s->blade, p);
-    if (pool_threads(s->pool) > 1)
+    if (s->looked)
         quadtree_add(&s->young, p, child);
     fresh_add(s, child);
     return true;
@@ -48,6 +48,7 @@ static bool grow(Simulation *s, uint32_t v, Vec2 direction, bool looked)
  * lets go of this node. */
 static void grow_single(Simulation *s, const Pulled *p)
 {
+    crowds_wake(s, p->node);
     for (;;) {
         Pull pull, best = {NO_POINT, 0};
         double best2 = HUGE_VAL;
@@ -82,8 +83,8 @@ static void bar_pulled(uint32_t first, uint32_t last, void *user)
 /* Children are born one after the other, as each takes up room; but threads look first how much there is. */
 static void grow_pulled(Simulation *s)
 {
-    enum { GRAIN = 32 };
-    bool looked = pool_threads(s->pool) > 1;
+    enum { GRAIN = 128 }; /* some ten microseconds */
+    bool looked = s->looked = pool_threads(s->pool) > 1 && s->n_pulled > GRAIN;
     s->n_fresh = 0;
     quadtree_reset(&s->young, field_box(s));
     if (looked)
@@ -182,106 +183,6 @@ bool source_remove_reached(Simulation *s, uint32_t k)
     s->counts.reached++;
     source_remove(s, k);
     return true;
-}
-
-static void remove_all(Simulation *s, uint32_t first, uint32_t last)
-{
-    for (uint32_t k = first; k < last; k++)
-        if (s->mark[k])
-            source_remove_reached(s, k);
-}
-
-/* ---- a turn of all sources ---- */
-
-/* What the sources do, band by band: look at the fresh nodes, each on its own and on any thread; then, in the order of the slots and by one
- * thread at a time, go when they are reached, and pull. */
-typedef struct {
-    Simulation *s;
-    bool look, remove, pull;
-    uint32_t ring;   /* bands that may wait */
-    gint settled;    /* bands that no longer do; atomic */
-    gint busy;       /* a thread is settling; atomic */
-} Turn;
-
-static void settle(Turn *t, uint32_t b)
-{
-    Simulation *s = t->s;
-    const Band *band = &s->crowds.band[b];
-    gsize at = (gsize)(b % t->ring) * s->crowds.longest;
-    if (t->pull)
-        pulls_sum(s, band->first, band->last, t->remove, s->pull_x + at, s->pull_y + at);
-    else
-        remove_all(s, band->first, band->last);
-}
-
-/* Settles what can be, unless another thread does. */
-static void settle_ready(Turn *t)
-{
-    gint n = (gint)t->s->crowds.n_bands, b = g_atomic_int_get(&t->settled);
-    while (b < n && g_atomic_int_get(&t->s->ready[b])) {
-        if (!g_atomic_int_compare_and_exchange(&t->busy, 0, 1))
-            return; /* the other one looks again after it is through */
-        for (b = g_atomic_int_get(&t->settled); b < n && g_atomic_int_get(&t->s->ready[b]); b++) {
-            settle(t, (uint32_t)b);
-            g_atomic_int_set(&t->settled, b + 1);
-        }
-        g_atomic_int_set(&t->busy, 0);
-    }
-}
-
-static void take_bands(uint32_t first, uint32_t last, void *user)
-{
-    enum { PATIENCE = 2000 };
-    Turn *t = user;
-    Simulation *s = t->s;
-    Sight sight;
-    for (uint32_t b = first; b < last; b++) {
-        const Band *band = &s->crowds.band[b];
-        uint32_t seen = 0;
-        for (uint32_t c = band->first_crowd; t->look && c < band->last_crowd; c++)
-            seen += crowd_look(s, &s->crowds.crowd[c], &sight);
-        if (seen)
-            g_atomic_int_add(&s->seen, (gint)seen); /* a sum: the order of the threads doesn't matter */
-        for (uint32_t i = 1; b >= (uint32_t)g_atomic_int_get(&t->settled) + t->ring; i++) {
-            settle_ready(t);
-            if (i % PATIENCE == 0)
-                g_usleep(50); /* the one who is at the first of them has no processor */
-        }
-        gsize at = (gsize)(b % t->ring) * s->crowds.longest;
-        if (t->pull && s->veins.n)
-            pulls_draw(s, band->first, band->last, s->pull_x + at, s->pull_y + at);
-        g_atomic_int_set(&s->ready[b], 1);
-        settle_ready(t);
-    }
-}
-
-void sources_turn(Simulation *s, bool look, bool remove, bool pull)
-{
-    const Crowds *c = &s->crowds;
-    Turn t = {.s = s, .look = look, .remove = remove, .pull = pull, .ring = pool_threads(s->pool) > 1 ? 4 * pool_threads(s->pool) : 1};
-    if (look) {
-        boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
-        crowds_prepare(s);
-    }
-    gsize wanted = (gsize)t.ring * c->longest;
-    if (s->cap_pull < wanted) {
-        s->cap_pull = wanted + wanted / 2;
-        s->pull_x = g_renew(double, s->pull_x, s->cap_pull);
-        s->pull_y = g_renew(double, s->pull_y, s->cap_pull);
-    }
-    if (s->cap_ready < c->n_bands) {
-        s->cap_ready = 2 * c->n_bands;
-        s->ready = g_renew(gint, s->ready, s->cap_ready);
-    }
-    for (uint32_t b = 0; b < c->n_bands; b++)
-        s->ready[b] = 0;
-    if (pull) {
-        s->n_pulled = s->n_live = 0;
-        s->drawn = true;
-    }
-    s->seen = 0;
-    pool_for(s->pool, c->n_bands, 1, take_bands, &t);
-    s->counts.updates += (uint64_t)s->seen;
 }
 
 /* ---- the step ---- */

@@ -4,7 +4,6 @@
 #include "geom/vectors.h"
 #include "sim/state.h"
 
-
 /* Members that a source apart pulls now. A reached source of a closed pattern waits for its tagged veins alone, and not for those that
  * have arrived. */
 static uint8_t pulling(const Simulation *s, uint32_t k)
@@ -41,18 +40,19 @@ static uint32_t pulled_entry(Simulation *s, uint32_t v, uint32_t k)
 /* The sums of four nodes under way: sources beside each other mostly pull the same few. Each sum is that of its pulls one after the other,
  * in the order of the slots; the nothing that other pulls add to it changes no bit. */
 typedef struct {
-    FourMask node, count; /* node -1: none */
     Four x, y;
+    EightNodes node, count; /* in two halves of a lane of x each; node NO_POINT: none */
+    FourNodes line[4];      /* node i, to compare four slots with */
     uint32_t entry[4], next; /* in pulled[]; the one to go next */
 } Sums;
 
 static void sums_put(Simulation *s, const Sums *sums, uint32_t i, uint32_t k)
 {
-    if (sums->node[i] < 0)
+    if (sums->node[2 * i] == NO_POINT)
         return;
     Pulled *p = &s->pulled[sums->entry[i]];
     p->sum = vec2(sums->x[i], sums->y[i]);
-    p->count = (uint32_t)sums->count[i];
+    p->count = sums->count[2 * i];
     p->last = k;
 }
 
@@ -63,43 +63,57 @@ static __attribute__((noinline)) void sums_turn(Simulation *s, Sums *sums, uint3
     sums_put(s, sums, i, k);
     sums->entry[i] = pulled_entry(s, v, k);
     const Pulled *p = &s->pulled[sums->entry[i]];
-    sums->node[i] = v;
-    sums->count[i] = p->count;
+    sums->node[2 * i] = sums->node[2 * i + 1] = v;
+    sums->line[i] = (FourNodes){v, v, v, v};
+    sums->count[2 * i] = sums->count[2 * i + 1] = p->count;
     sums->x[i] = p->sum.x;
     sums->y[i] = p->sum.y;
 }
 
-static void sums_add(Simulation *s, Sums *sums, uint32_t v, uint32_t k, double x, double y)
+/* Where node v is; 4: nowhere. */
+static inline uint32_t sums_find(const Sums *sums, uint32_t v)
 {
-    FourMask mine = sums->node == (FourMask){v, v, v, v};
-    if (!FOUR_ANY(mine)) {
-        sums_turn(s, sums, v, k);
-        mine = sums->node == (FourMask){v, v, v, v};
-    }
-    sums->x += (Four)((FourMask)FOUR(x) & mine);
-    sums->y += (Four)((FourMask)FOUR(y) & mine);
-    sums->count -= mine;
+    uint32_t i = 0;
+    while (i < 4 && sums->node[2 * i] != v)
+        i++;
+    return i;
 }
 
-FOUR_WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, double *restrict x, double *restrict y)
+static void sums_add(Simulation *s, Sums *sums, uint32_t v, uint32_t k, double x, double y)
 {
-    enum { SOME = 64 };
-    double d2[SOME];
-    for (; first < last; first += SOME, x += SOME, y += SOME) {
-        gsize n = MIN(SOME, last - first);
-        const Vec2 *place = s->place + first, *pos = s->veins.pos;
-        const uint32_t *near = s->near + first;
-        for (gsize i = 0; i < n; i++) {
-            Vec2 towards = vec_sub(place[i], pos[near[i] < NEAR_APART ? near[i] : 0]);
-            x[i] = towards.x;
-            y[i] = towards.y;
+    uint32_t i = sums_find(sums, v);
+    if (i == 4) {
+        i = sums->next % 4;
+        sums_turn(s, sums, v, k);
+    }
+    sums->x[i] += x;
+    sums->y[i] += y;
+    sums->count[2 * i]++;
+    sums->count[2 * i + 1]++;
+}
+
+FOUR_WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw)
+{
+    if (!draw->x)
+        return;
+    const Vec2 *place = s->place, *pos = s->veins.pos;
+    const uint32_t *near = s->near;
+    const double *near2 = s->near2;
+    double *restrict x = draw->x + (first - draw->first), *restrict y = draw->y + (first - draw->first);
+    for (uint32_t k = first; k < last; k += 4, x += 4, y += 4) {
+        uint32_t n = MIN(last - k, 4);
+        Four d2 = FOUR(1.0);
+        for (uint32_t l = 0; l < n; l++) {
+            uint32_t v = near[k + l];
+            Vec2 towards = vec_sub(place[k + l], pos[v < NEAR_APART ? v : 0]);
+            x[l] = towards.x;
+            y[l] = towards.y;
         }
-        memcpy(d2, s->near2 + first, sizeof *d2 * n);
-        for (gsize i = 0; i < n; i++)
-            d2[i] = 1.0 / sqrt(d2[i]);
-        for (gsize i = 0; i < n; i++) {
-            x[i] *= d2[i];
-            y[i] *= d2[i];
+        memcpy(&d2, near2 + k, sizeof *near2 * n);
+        four_inverse_root(&d2, &d2);
+        for (uint32_t l = 0; l < n; l++) {
+            x[l] *= d2[l];
+            y[l] *= d2[l];
         }
     }
 }
@@ -127,37 +141,116 @@ static void pull_apart(Simulation *s, Sums *sums, uint32_t k, double x, double y
         }
 }
 
-FOUR_WIDE void pulls_sum(Simulation *s, uint32_t first, uint32_t last, bool remove, const double *x, const double *y)
+/* Does one of four slots pull none of the nodes under way? */
+static inline __attribute__((always_inline)) bool any_new(const Sums *sums, FourNodes near)
+{
+    const FourNodes *n = sums->line;
+    TwoMask two = (TwoMask) ~((near == n[0]) | (near == n[1]) | (near == n[2]) | (near == n[3]));
+    return (two[0] | two[1]) != 0;
+}
+
+/* Makes room for all that slots k … k + 3 pull: four lines suffice, the last four that came. */
+static __attribute__((noinline)) void sums_make_room(Simulation *s, Sums *sums, uint32_t k)
+{
+    for (uint32_t l = 0; l < 4;) {
+        uint32_t v = s->near[k + l];
+        l++;
+        if (sums_find(sums, v) == 4) {
+            sums_turn(s, sums, v, k);
+            l = 0;
+        }
+    }
+}
+
+/* Slots that are not plain, and the last few. */
+static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, uint32_t first, uint32_t last, bool remove, const double *x,
+                                                    const double *y)
+{
+    for (uint32_t k = first; k < last; k++, x++, y++) {
+        if (s->mark[k] == 0) {
+            sums_add(s, sums, s->near[k], k, *x, *y);
+            s->n_live++;
+        } else if (!remove || !source_remove_reached(s, k)) {
+            pull_apart(s, sums, k, *x, *y);
+        }
+    }
+}
+
+/* Slots first … last-1, each with what it pulls; x and y are those of the band. */
+static FOUR_WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, bool remove, const double *x, const double *y)
 {
     const uint8_t *mark = s->mark;
     const uint32_t *near = s->near;
+    Four sum_x = sums->x, sum_y = sums->y; /* in registers, and in memory where others change them */
+    EightNodes node = sums->node, count = sums->count;
     uint32_t live = 0;
-    Sums sums = {.node = {-1, -1, -1, -1}};
-    FourMask node = sums.node, count = sums.count;
-    Four sum_x = sums.x, sum_y = sums.y; /* in registers, and in memory where others change them */
-    for (uint32_t k = first; k < last; k++, x++, y++) {
-        bool apart = mark[k] != 0;
-        FourMask v = {near[k], near[k], near[k], near[k]}, mine = node == v;
-        if (apart || !FOUR_ANY(mine)) {
-            sums.count = count, sums.x = sum_x, sums.y = sum_y;
-            if (apart && (!remove || !source_remove_reached(s, k)))
-                pull_apart(s, &sums, k, *x, *y);
-            else if (!apart)
-                sums_turn(s, &sums, near[k], k);
-            node = sums.node, count = sums.count, sum_x = sums.x, sum_y = sums.y;
-            if (apart)
-                continue;
-            mine = node == v;
+    for (uint32_t k = first; k < last; k += 4, x += 4, y += 4) {
+        uint32_t marks = 1;
+        FourNodes four = {0};
+        if (k + 4 <= last) {
+            memcpy(&marks, mark + k, sizeof marks);
+            memcpy(&four, near + k, sizeof four);
         }
-        sum_x += (Four)((FourMask)FOUR(*x) & mine);
-        sum_y += (Four)((FourMask)FOUR(*y) & mine);
-        count -= mine;
-        live++;
+        if (marks || any_new(sums, four)) {
+            sums->x = sum_x, sums->y = sum_y, sums->count = count;
+            if (marks)
+                sums_add_each(s, sums, k, MIN(k + 4, last), remove, x, y);
+            else
+                sums_make_room(s, sums, k);
+            sum_x = sums->x, sum_y = sums->y, node = sums->node, count = sums->count;
+            if (marks)
+                continue;
+        }
+        for (uint32_t l = 0; l < 4; l++) {
+            EightNodes mine = (EightNodes)(EIGHT_NODES(four[l]) == node);
+            sum_x += (Four)((FourMask)FOUR(x[l]) & (FourMask)mine);
+            sum_y += (Four)((FourMask)FOUR(y[l]) & (FourMask)mine);
+            count -= mine;
+        }
+        live += 4;
     }
-    sums.count = count, sums.x = sum_x, sums.y = sum_y;
-    for (uint32_t i = 0; i < 4; i++)
-        sums_put(s, &sums, i, last - 1);
+    sums->x = sum_x, sums->y = sum_y, sums->count = count;
     s->n_live += live;
+}
+
+/* Those of a crowd that pull one node. */
+static void sum_lone(Simulation *s, Sums *sums, uint32_t first, uint32_t last, uint32_t v, const double *x, const double *y)
+{
+    uint32_t i = sums_find(sums, v), n = last - first;
+    if (i == 4) {
+        i = sums->next % 4;
+        sums_turn(s, sums, v, first);
+    }
+    double sum_x = sums->x[i], sum_y = sums->y[i];
+    for (uint32_t k = 0; k < n; k++) {
+        sum_x += x[k];
+        sum_y += y[k];
+    }
+    sums->x[i] = sum_x;
+    sums->y[i] = sum_y;
+    sums->count[2 * i] += n;
+    sums->count[2 * i + 1] += n;
+    s->n_live += n;
+}
+
+void pulls_sum(Simulation *s, const Band *band, bool remove, const double *x, const double *y)
+{
+    const Crowd *crowd = s->crowds.crowd;
+    Sums sums = {.node = EIGHT_NODES(NO_POINT)};
+    uint32_t done = band->first;
+    memset(sums.line, 0xff, sizeof sums.line); /* NO_POINT */
+    for (uint32_t r = 0; r < CROWD_SIDE; r++) /* that is the order of the slots */
+        for (uint32_t c = band->first_crowd; c < band->last_crowd; c++) {
+            uint32_t first = crowd[c].first[r], last = crowd[c].last[r];
+            if (crowd[c].lone == NO_POINT || first == last)
+                continue;
+            sum_run(s, &sums, done, first, remove, x + (done - band->first), y + (done - band->first));
+            sum_lone(s, &sums, first, last, crowd[c].lone, x + (first - band->first), y + (first - band->first));
+            done = last;
+        }
+    sum_run(s, &sums, done, band->last, remove, x + (done - band->first), y + (done - band->first));
+    for (uint32_t i = 0; i < 4; i++)
+        sums_put(s, &sums, i, band->last - 1);
 }
 
 bool pulls_next(const Simulation *s, const Pulled *p, uint32_t from, Pull *pull)

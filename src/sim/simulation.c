@@ -269,11 +269,14 @@ void simulation_free(Simulation *s)
     g_free(s->waiting);
     g_free(s->pull_x);
     g_free(s->pull_y);
-    g_free(s->ready);
+    g_free(s->taken);
     g_free(s->pulled);
     g_free(s->fresh);
     quadtree_clear(&s->young);
     boxtree_clear(&s->fresh_tree);
+    g_free(s->fresh_points.v);
+    g_free(s->fresh_points.x);
+    g_free(s->fresh_points.y);
     g_free(s);
 }
 

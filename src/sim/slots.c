@@ -193,6 +193,7 @@ static void *permuted(void *array, gsize size, gsize cap, const uint32_t *slot, 
 
 void sources_sort(Simulation *s)
 {
+    crowds_wake(s, NO_POINT);
     uint32_t n = sources_alive(s), *start = g_new(uint32_t, grid_cells(&s->grid) + 1), *slot = sorted_slots(s, start);
 #define PERMUTE(array, wanted) \
     if (wanted)                \

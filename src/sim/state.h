@@ -66,29 +66,41 @@ typedef struct {
     double most2;                                 /* not less than any near2 */
     ZoneBox zone;                                 /* holds their zones */
     bool restless;                                /* one that is apart has no zone */
+    uint32_t lone; /* unless NO_POINT: the one node that all of them pull, unmarked; near[] and near2[] don't say so */
 } Crowd;
 
-/* Crowds side by side, whose slots follow each other: what a thread takes up at a time. */
+/* Crowds side by side, whose slots follow each other. */
 typedef struct {
     uint32_t first, last;             /* slots */
     uint32_t first_crowd, last_crowd;
 } Band;
 
+/* Bands with their squares: what a thread takes up at a time. */
+typedef struct {
+    uint32_t first_band, last_band, first_square, last_square;
+} Group;
+
+/* Room for points (geom/points.h). */
+typedef struct {
+    uint32_t v[POINTS_MOST + 4];
+    double x[POINTS_MOST + 4], y[POINTS_MOST + 4];
+} PointsRoom;
+
 /* 4 x 4 crowds, and the fresh nodes that may concern one of them. */
-enum { SQUARE_RIVALS = 256 };
 typedef struct {
     Box2 place;
     double most2;
     uint32_t plain;
     uint32_t n_nearest, n_rivals; /* above the limit: they did not fit, or it was not worth while */
-    uint32_t nearest[POINTS_MOST], rival[SQUARE_RIVALS];
+    PointsRoom nearest, rival;
 } Square;
 
 /* The sources in crowds, as of the last sorting and with what has come since. */
 typedef struct {
-    uint32_t n_crowds, cap_crowds, n_bands, cap_bands, n_squares, n_slots;
+    uint32_t n_crowds, cap_crowds, n_bands, cap_bands, n_groups, cap_groups, n_squares, n_slots;
     Crowd *crowd;
     Band *band;
+    Group *group;
     Square *square;
     uint32_t longest; /* slots of a band */
 } Crowds;
@@ -153,17 +165,19 @@ struct Simulation {
     uint32_t n_waiting, next_waiting;
     /* work space of one step */
     double *pull_x, *pull_y; /* of the bands under way */
-    gint *ready;             /* [n_bands] atomic: a band waits to be settled */
+    gint *taken;             /* [n_groups] atomic: a thread is at work at it, or has been */
     gsize cap_pull;
-    uint32_t cap_ready;
+    uint32_t cap_taken;
     Pulled *pulled;
     uint32_t n_pulled, cap_pulled;
     uint32_t n_live; /* sources that pull */
     bool drawn;      /* pulled[] speaks of the coming step already */
     uint32_t *fresh; /* nodes born in this step */
     uint32_t n_fresh, cap_fresh;
-    Quadtree young;  /* the same, while they are being born */
+    Quadtree young;  /* the same, while they are being born: only if `looked` */
+    bool looked;     /* where children have room was looked at before any was born */
     Boxtree fresh_tree;
+    Points fresh_points; /* the same, unless there are many */
     gint seen; /* sources that looked at a step's nodes; atomic */
     SimulationCounts counts;
 };
@@ -203,15 +217,18 @@ void crowds_build(Simulation *s, const uint32_t *start); /* of sorted slots; tho
 void crowds_add(Simulation *s);                          /* takes in newcomers, whose neighbourhoods are known */
 void crowd_part(Simulation *s, uint32_t k);              /* closed: slot k leaves the others and looks for itself from now on */
 void crowd_measure(const Simulation *s, Crowd *c);       /* renews what depends on its sources' neighbourhoods */
-void crowds_prepare(Simulation *s);                      /* shows fresh_tree to the squares */
 
 /* Nodes beside each other in memory; a pair of places out of sight follows. */
 enum { FEW = 1024, SIGHT_GUARDS = 8 };
 typedef struct {
     uint32_t n;
-    uint32_t v[FEW];
-    double x[FEW], y[FEW];
+    uint32_t v[FEW + 4];
+    double x[FEW + 4], y[FEW + 4];
 } Few;
+
+/* sight.c */
+void fresh_prepare(Simulation *s);                         /* lists them */
+void squares_prepare(const Simulation *s, const Group *g); /* shows them to the squares of a group */
 
 /* The fresh nodes that a crowd looks at. */
 typedef struct {
@@ -223,12 +240,36 @@ typedef struct {
 } Sight;
 bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight); /* FALSE when there are too many, and each source must look for itself */
 
-/* look.c */
-uint32_t crowd_look(Simulation *s, Crowd *c, Sight *room); /* shows the fresh nodes to a crowd; returns how many sources they may concern */
+/* Where the pulls of slots go: that of slot k to x[k - first], y[k - first]. NULL: nobody asks for them. */
+typedef struct {
+    double *x, *y;
+    uint32_t first;
+} Draw;
 
-/* pull.c; slots first … last-1, with x and y of what they do beside each other */
-void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, double *restrict x, double *restrict y); /* at near[]; of length 1 */
-void pulls_sum(Simulation *s, uint32_t first, uint32_t last, bool remove, const double *x, const double *y); /* fills pulled[] */
+/* lone.c */
+void crowd_rest(Simulation *s, Crowd *c, uint32_t node); /* they all pull one node */
+void crowd_wake(Simulation *s, Crowd *c);                /* brings near[] and near2[] up to date */
+void crowds_wake(Simulation *s, uint32_t node);          /* those that pull the node; NO_POINT: all */
+bool crowd_turns(const Simulation *s, const Crowd *c, const Sight *sight); /* all of a lone one turn to the node in sight, and keep together */
+uint32_t crowd_draw_lone(const Simulation *s, Crowd *c, const Draw *draw); /* renews most2; returns how many there are */
+
+/* look.c; what the sources of a crowd pull after it is drawn, too */
+/* Shows the fresh nodes to a crowd; returns how many sources they may concern. */
+uint32_t crowd_look(Simulation *s, Crowd *c, Sight *room, const Draw *draw);
+void source_look_open(Simulation *s, uint32_t k);   /* the same of one source */
+void source_look_closed(Simulation *s, uint32_t k);
+
+/* look_open.c, look_closed.c; slots first … last-1 of a crowd look at the few that there are. Return the largest near2.
+ * `together` becomes FALSE unless all turn to one of them, and no more is to be said of any. */
+double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, const Draw *draw, bool *together);
+double look_closed_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, const Draw *draw, bool *together, bool *parted);
+
+/* pull.c */
+void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw); /* slots first … last-1, at near[]; of length 1 */
+void pulls_sum(Simulation *s, const Band *band, bool remove, const double *x, const double *y); /* x[0], y[0]: of its first slot. Fills pulled[] */
+
+/* turn.c */
+void sources_turn(Simulation *s, bool look, bool remove, bool pull); /* all sources look at the new nodes, go when reached, pull */
 
 /* A pull at a node, found again: the next one at p->node from slot `from` on that has not been let go of since. FALSE when there is none. */
 typedef struct {
@@ -240,7 +281,6 @@ bool pulls_next(const Simulation *s, const Pulled *p, uint32_t from, Pull *pull)
 /* develop.c */
 uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there were */
 bool source_remove_reached(Simulation *s, uint32_t k); /* returns whether it was */
-void sources_turn(Simulation *s, bool look, bool remove, bool pull); /* all sources look at the new nodes, go when reached, pull */
 void sources_remove(Simulation *s);    /* shows the new nodes to the sources; tags, arrivals, anastomoses, removal */
 
 static inline bool source_is_alive(const Simulation *s, uint32_t k) { return s->place[k].x == s->place[k].x; }

@@ -515,50 +515,90 @@ static void test_quadtree(void)
 
 enum { MOST = POINTS_MOST };
 
+/* Points with room of their own. */
+typedef struct {
+    uint32_t v[MOST + 4];
+    double x[MOST + 4], y[MOST + 4];
+} Room;
+
+static Points points_in(Room *r, const uint32_t *v, uint32_t n, const Vec2 *pos)
+{
+    Points p = {n, r->v, r->x, r->y};
+    memcpy(r->v, v, sizeof *v * n);
+    points_fill(&p, pos);
+    return p;
+}
+
+static void check_places(const Points *p, const Vec2 *pos)
+{
+    for (uint32_t k = 0; k < p->n; k++) {
+        g_assert_true(p->x[k] == pos[p->v[k]].x && p->y[k] == pos[p->v[k]].y);
+        g_assert_true(k == 0 || p->v[k - 1] < p->v[k]);
+    }
+}
+
 /* Every point that is nearest to one of some places in the box must be among those found. Returns how many there are. */
 static uint32_t check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, double bound2, uint32_t *out)
 {
-    uint32_t near[MOST], found = boxtree_near(t, pos, b, bound2, near, MOST), tight = 0;
+    Room room, tight_room, all_room;
+    uint32_t near[MOST], found = boxtree_near(t, pos, b, bound2, near, MOST), all_of[MOST];
     if (found > MOST)
         return found;
     if (found)
         g_assert_cmpuint(boxtree_near(t, pos, b, bound2, out, found - 1), ==, found);
-    qsort(near, found, sizeof *near, by_index);
-    tight = points_nearest_to(pos, near, found, b, bound2, out);
-    g_assert_cmpuint(tight, <=, found);
-    for (uint32_t k = 1; k < tight; k++)
-        g_assert_cmpuint(out[k - 1], <, out[k]);
+    boxtree_sort(near, found);
+    Points p = points_in(&room, near, found, pos), tight = {0, tight_room.v, tight_room.x, tight_room.y};
+    g_assert_cmpuint(points_nearest_to(&p, b, bound2, &tight), ==, tight.n);
+    g_assert_cmpuint(tight.n, <=, found);
+    check_places(&tight, pos);
     for (int i = 0; i <= 4; i++)
         for (int j = 0; j <= 4; j++) {
-            Vec2 p = vec2(b.x0 + (b.x1 - b.x0) * i / 4, b.y0 + (b.y1 - b.y0) * j / 4);
+            Vec2 q = vec2(b.x0 + (b.x1 - b.x0) * i / 4, b.y0 + (b.y1 - b.y0) * j / 4);
             uint32_t best = 1; /* points are the odd ones */
             for (uint32_t k = 0; k < n; k++) {
                 uint32_t v = 2 * k + 1;
-                if (plain_dist2(pos[v], p) < plain_dist2(pos[best], p))
+                if (plain_dist2(pos[v], q) < plain_dist2(pos[best], q))
                     best = v;
             }
-            if (n && plain_dist2(pos[best], p) < bound2)
-                g_assert_nonnull(bsearch(&best, out, tight, sizeof *out, by_index));
+            if (n && plain_dist2(pos[best], q) < bound2)
+                g_assert_nonnull(bsearch(&best, tight.v, tight.n, sizeof *tight.v, by_index));
         }
-    g_assert_cmpuint(points_nearest_to(pos, near, found, b, bound2, near), ==, tight); /* in place */
-    g_assert_cmpmem(near, (int)(sizeof *near * tight), out, (int)(sizeof *out * tight));
-    return tight;
+    g_assert_cmpuint(points_nearest_to(&p, b, bound2, &p), ==, tight.n); /* in place */
+    g_assert_cmpmem(p.v, (int)(sizeof *p.v * p.n), tight.v, (int)(sizeof *tight.v * tight.n));
+    memcpy(out, tight.v, sizeof *out * tight.n);
+    if (n <= MOST) { /* of all: none only where none is within the bound */
+        for (uint32_t k = 0; k < n; k++)
+            all_of[k] = 2 * k + 1;
+        Points all = points_in(&all_room, all_of, n, pos);
+        bool any = false;
+        for (uint32_t k = 0; k < n; k++)
+            any |= box_dist2(b, pos[all_of[k]]) <= bound2;
+        g_assert_cmpint(points_nearest_to(&all, b, bound2, &all) > 0, ==, any);
+        for (uint32_t k = 0; k < tight.n; k++)
+            g_assert_nonnull(bsearch(&tight.v[k], all.v, all.n, sizeof *all.v, by_index));
+    }
+    return tight.n;
 }
 
 /* Every point that the one nearest to some place in the box does not exclude there must be among the rivals, unless another point does and
  * may. */
 static uint32_t check_rivals(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, const uint32_t *near, uint32_t n_near, bool alone)
 {
-    uint32_t *out = g_new(uint32_t, n), *list = g_new(uint32_t, n);
-    uint32_t found = boxtree_rivals(t, pos, b, near, n_near, alone, out, n);
+    Room near_room, out_room, list_room;
+    uint32_t *all = g_new(uint32_t, n);
+    Points guard = points_in(&near_room, near, n_near, pos), out = {0, out_room.v, out_room.x, out_room.y};
+    uint32_t found = boxtree_rivals(t, pos, b, &guard, alone, &out, n);
     g_assert_cmpuint(found, <=, n);
-    if (found)
-        g_assert_cmpuint(boxtree_rivals(t, pos, b, near, n_near, alone, list, found - 1), ==, found);
-    qsort(out, found, sizeof *out, by_index);
+    g_assert_cmpuint(found, ==, out.n);
+    check_places(&out, pos);
     for (uint32_t i = 0; i < n; i++)
-        list[i] = 2 * i + 1;
-    g_assert_cmpuint(points_rivals(pos, list, n, b, near, n_near, alone, list), ==, found); /* of all, and in place */
-    g_assert_cmpmem(list, (int)(sizeof *list * found), out, (int)(sizeof *out * found));
+        all[i] = 2 * i + 1;
+    Points list = points_in(&list_room, all, n, pos);
+    g_assert_cmpuint(points_rivals(&list, b, &guard, alone, &list, n), ==, found); /* of all, and in place */
+    g_assert_cmpmem(list.v, (int)(sizeof *list.v * found), out.v, (int)(sizeof *out.v * found));
+    list = points_in(&list_room, all, n, pos);
+    if (found && alone)
+        g_assert_cmpuint(points_rivals(&list, b, &guard, alone, &list, found - 1), >, found - 1);
     for (int i = 0; i <= 4; i++)
         for (int j = 0; j <= 4; j++) {
             Vec2 p = vec2(b.x0 + (b.x1 - b.x0) * i / 4, b.y0 + (b.y1 - b.y0) * j / 4);
@@ -569,11 +609,10 @@ static uint32_t check_rivals(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2
                 bool excluded = plain_dist2(pos[best], pos[v]) <= plain_dist2(pos[v], p);
                 for (uint32_t u = 1; !alone && u < 2 * n && !excluded; u += 2)
                     excluded = plain_dist2(pos[u], p) <= plain_dist2(pos[v], p) && plain_dist2(pos[u], pos[v]) <= plain_dist2(pos[v], p);
-                g_assert_true(excluded || bsearch(&v, out, found, sizeof *out, by_index));
+                g_assert_true(excluded || bsearch(&v, out.v, found, sizeof *out.v, by_index));
             }
         }
-    g_free(out);
-    g_free(list);
+    g_free(all);
     return found;
 }
 

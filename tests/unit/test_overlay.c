@@ -491,6 +491,19 @@ static VenLeaf *one_leaf(VenParams *p, const char *which, VenScan *sheet)
 }
 
 /* Leaves of a sheet are those that are captured one by one, down to the colours; they share one copy of the scan. */
+/* A leaf of a sheet has the pixels that lie around it. */
+static void check_around(const VenLeaf *of_sheet, const VenLeaf *alone)
+{
+    const Scan *a = of_sheet->ground->scan, *b = alone->ground->scan;
+    Box2 box = of_sheet->ground->profile->outline->box;
+    g_assert_cmpuint(a->width, ==, b->width);
+    g_assert_cmpuint(a->height, ==, b->height);
+    for (uint32_t y = (uint32_t)(a->height - box.y1) - 20; y < (uint32_t)(a->height - box.y0) + 20; y++)
+        for (uint32_t x = (uint32_t)box.x0 - 20; x < (uint32_t)box.x1 + 20; x++)
+            for (uint32_t c = 0; c < a->channels; c++)
+                g_assert_cmpuint(scan_sample(a, x, y, c), ==, scan_sample(b, x, y, c));
+}
+
 static void test_each(void)
 {
     static const char *const number[] = {"1", "2", "3", "2"};
@@ -506,7 +519,7 @@ static void test_each(void)
     for (gsize k = 0; k < G_N_ELEMENTS(number); k++) { /* the last one for the second time */
         VenLeaf *of_sheet = one_leaf(p, number[k], sheet), *alone = one_leaf(p, number[k], NULL);
         g_assert_cmphex(leaf_hash(of_sheet->net), ==, leaf_hash(alone->net));
-        check_same(of_sheet->ground->scan, alone->ground->scan);
+        check_around(of_sheet, alone);
         char *a = ven_leaf_record(of_sheet), *b = ven_leaf_record(alone), *name = g_strdup_printf("z_%zu", k + 1);
         g_assert_cmpstr(a, ==, b);
         g_assert_true(ven_write_capture_of(of_sheet, folder, name, "z", &error));

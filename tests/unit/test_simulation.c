@@ -105,14 +105,15 @@ static void wrong_hood(const Simulation *s, Vec2 p)
     g_error("step %u: a source at %.17g,%.17g has a wrong neighbourhood", s->blade->step, p.x, p.y);
 }
 
-static void check_hood(const Simulation *s, uint32_t k)
+/* `lone`: the node that its crowd pulls as a whole, or NO_POINT. */
+static void check_hood(const Simulation *s, uint32_t k, uint32_t lone)
 {
     View view = {s, k};
     const Vec2 *pos = s->veins.pos, p = s->place[k];
-    uint32_t got[HOOD_MAX], n = source_nodes(s, k, got), count = s->veins.n;
+    uint32_t got[HOOD_MAX] = {lone}, n = lone == NO_POINT ? source_nodes(s, k, got) : 1, count = s->veins.n;
     if (s->def.pattern == PATTERN_OPEN) {
         uint32_t want = plain_nearest(pos, count, p, in_view, &view);
-        if (n != (want != NO_POINT) || (n && (got[0] != want || s->near2[k] != plain_dist2(pos[want], p))))
+        if (n != (want != NO_POINT) || (n && (got[0] != want || (lone == NO_POINT && s->near2[k] != plain_dist2(pos[want], p)))))
             wrong_hood(s, p);
     } else if (s->def.neighbourhood == NEIGHBOURHOOD_RELATIVE) {
         uint32_t *want = g_new(uint32_t, count), m = plain_relative(pos, count, p, in_view, &view, want);
@@ -172,19 +173,42 @@ static void check_placement(const Simulation *s, const Memory *m)
     }
 }
 
+/* The one node that all sources of a crowd pull, for each slot; NO_POINT for those that speak for themselves. */
+static uint32_t *lone_nodes(const Simulation *s)
+{
+    uint32_t *lone = g_new(uint32_t, s->n_sources + 1);
+    memset(lone, 0xff, sizeof *lone * (s->n_sources + 1));
+    for (uint32_t i = 0; i < s->crowds.n_crowds; i++) {
+        const Crowd *c = &s->crowds.crowd[i];
+        double most2 = -1.0;
+        for (uint32_t r = 0; r < CROWD_SIDE && c->lone != NO_POINT; r++)
+            for (uint32_t k = c->first[r]; k < c->last[r]; k++) {
+                lone[k] = c->lone;
+                most2 = MAX(most2, plain_dist2(s->place[k], s->veins.pos[c->lone]));
+                g_assert_cmpuint(s->mark[k], ==, 0);
+                g_assert_cmpuint(s->near[k], ==, NO_POINT);
+            }
+        if (c->lone != NO_POINT)
+            g_assert_cmpfloat(c->most2, ==, most2);
+    }
+    return lone;
+}
+
 static void check_sources(const Simulation *s)
 {
+    uint32_t *lone = lone_nodes(s);
     double kill = s->def.kill_distance * s->blade->unit;
     uint32_t alive = 0;
     for (uint32_t k = 0; k < s->n_sources; k++) {
         if (!source_is_alive(s, k))
             continue;
         alive++;
-        check_hood(s, k);
+        check_hood(s, k, lone[k]);
         for (uint32_t v = 0; v < s->veins.n && s->def.pattern == PATTERN_OPEN && !s->reach; v++)
             g_assert_cmpfloat(vec_dist2(s->place[k], s->veins.pos[v]), >=, kill * kill);
     }
     g_assert_cmpuint(alive, ==, simulation_counts(s).sources);
+    g_free(lone);
 }
 
 static void remember(const Simulation *s, Memory *m)
@@ -514,7 +538,7 @@ static void test_seeds(void)
 static uint32_t stale_hoods(const Simulation *s, uint32_t *looked)
 {
     Cell cell = {0};
-    uint32_t off = 0;
+    uint32_t off = 0, *lone = lone_nodes(s);
     for (uint32_t k = 0; k < s->n_sources; k++) {
         if (!source_is_alive(s, k))
             continue;
@@ -531,11 +555,14 @@ static uint32_t stale_hoods(const Simulation *s, uint32_t *looked)
         } else {
             urquhart_find(&h, &cell, &f, s->place[k]);
         }
-        uint32_t n = source_nodes(s, k, got), m = sorted_members(&h, want);
+        uint32_t n = lone[k] == NO_POINT ? source_nodes(s, k, got) : 1, m = sorted_members(&h, want);
+        if (lone[k] != NO_POINT)
+            got[0] = lone[k];
         *looked += 1;
         off += n != m || memcmp(got, want, sizeof *got * n) != 0;
     }
     cell_clear(&cell);
+    g_free(lone);
     return off;
 }
 
@@ -577,10 +604,14 @@ static void test_many_sources(void)
         w->def.threads = 1;
         w->def.max_steps = 240;
         Simulation *s = start(&w->def);
-        uint32_t looked = 0;
-        while (simulation_step(s))
+        uint32_t looked = 0, lone = 0;
+        while (simulation_step(s)) {
+            for (uint32_t i = 0; i < s->crowds.n_crowds; i++)
+                lone += s->crowds.crowd[i].lone != NO_POINT;
             if (s->blade->step % 48 == 0)
                 g_assert_cmpuint(stale_hoods(s, &looked), ==, 0);
+        }
+        g_assert_cmpuint(lone, >, 1000); /* crowds that pull one node as a whole */
         simulation_free(s);
         workload_free(w);
     }

@@ -1,0 +1,129 @@
+/* Which of a step's nodes can concern a crowd of sources: from all nodes to those of a square of crowds, from these to those of a crowd. */
+#include <string.h>
+
+#include "sim/state.h"
+
+/* As many are gone through one after the other; of more, the tree says which. */
+enum { FRESH_LIST = 1024 };
+
+void fresh_prepare(Simulation *s)
+{
+    Points *p = &s->fresh_points;
+    p->n = s->n_fresh <= FRESH_LIST ? s->n_fresh : 0;
+    if (!p->v) {
+        p->v = g_new(uint32_t, points_room(FRESH_LIST));
+        p->x = g_new(double, points_room(FRESH_LIST));
+        p->y = g_new(double, points_room(FRESH_LIST));
+    }
+    memcpy(p->v, s->fresh, sizeof *p->v * p->n);
+    points_fill(p, s->veins.pos);
+}
+
+/* Fresh nodes that may be nearest to a place in the box: most of those that are not are gone. More than POINTS_MOST: too many. */
+static uint32_t nearest_to(const Simulation *s, Box2 box, double bound2, Points *out)
+{
+    if (s->n_fresh <= FRESH_LIST)
+        return points_nearest_to(&s->fresh_points, box, bound2, out);
+    uint32_t n = boxtree_near(&s->fresh_tree, s->veins.pos, box, bound2, out->v, POINTS_MOST);
+    if (n > POINTS_MOST)
+        return n;
+    out->n = n;
+    boxtree_sort(out->v, n);
+    points_fill(out, s->veins.pos);
+    return points_nearest_to(out, box, bound2, out);
+}
+
+/* With some of them the nearest: those of the others that may matter all the same. */
+static uint32_t rivals(const Simulation *s, Box2 box, const Points *near, Points *out, uint32_t cap)
+{
+    bool nearest_alone = s->reach != NULL;
+    if (s->n_fresh <= FRESH_LIST)
+        return points_rivals(&s->fresh_points, box, near, nearest_alone, out, cap);
+    return boxtree_rivals(&s->fresh_tree, s->veins.pos, box, near, nearest_alone, out, cap);
+}
+
+/* ---- squares ---- */
+
+static Points few_points(Few *f) { return (Points){f->n, f->v, f->x, f->y}; }
+
+static void square_prepare(const Simulation *s, Square *q)
+{
+    enum { FEWER = 32 };
+    q->n_rivals = 0;
+    q->n_nearest = POINTS_MOST + 1; /* each crowd for itself */
+    if (q->plain < FEWER)
+        return;
+    Points near = {0, q->nearest.v, q->nearest.x, q->nearest.y}, rival = {0, q->rival.v, q->rival.x, q->rival.y};
+    q->n_nearest = nearest_to(s, q->place, q->most2, &near);
+    if (s->def.pattern == PATTERN_CLOSED && q->n_nearest && q->n_nearest <= POINTS_MOST)
+        q->n_rivals = rivals(s, q->place, &near, &rival, POINTS_MOST);
+}
+
+void squares_prepare(const Simulation *s, const Group *g)
+{
+    const Crowds *c = &s->crowds;
+    for (uint32_t i = g->first_square; i < g->last_square; i++) {
+        c->square[i].place = box_empty();
+        c->square[i].most2 = -1.0;
+        c->square[i].plain = 0;
+    }
+    for (uint32_t i = c->band[g->first_band].first_crowd; i < c->band[g->last_band - 1].last_crowd; i++) {
+        const Crowd *crowd = &c->crowd[i];
+        if (crowd->square == NO_POINT || crowd->most2 < 0.0)
+            continue;
+        Square *q = &c->square[crowd->square];
+        q->place = box_union(q->place, crowd->place);
+        q->most2 = MAX(q->most2, crowd->most2);
+        q->plain += crowd->plain;
+    }
+    for (uint32_t i = g->first_square; i < g->last_square; i++)
+        square_prepare(s, &c->square[i]);
+}
+
+/* ---- crowds ---- */
+
+/* The nearest once more, as a closed pattern compares them with what its sources have. */
+static void sight_kin(const Simulation *s, Sight *sight)
+{
+    const Few *nearest = &sight->nearest;
+    const Vec2 *pos = s->veins.pos;
+    bool open = s->def.pattern == PATTERN_OPEN;
+    for (uint32_t j = 0; j < nearest->n; j++) {
+        uint32_t v = nearest->v[j], parent = s->veins.parent[v];
+        sight->kin[j] = v;
+        if (open)
+            continue;
+        sight->stride2[j] = parent == NO_POINT ? HUGE_VAL : vec_dist2(pos[v], pos[parent]);
+        sight->kin[j] |= (int64_t)(parent == NO_POINT ? 0 : parent) << 32;
+    }
+}
+
+bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
+{
+    Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
+    Few *nearest = &sight->nearest, *rival = &sight->rival;
+    nearest->n = rival->n = 0;
+    Points near = few_points(nearest), far = few_points(rival);
+    bool listed = q && q->n_nearest <= POINTS_MOST;
+    Points listed_near = listed ? (Points){q->n_nearest, q->nearest.v, q->nearest.x, q->nearest.y} : near;
+    uint32_t n = listed ? points_nearest_to(&listed_near, c->place, c->most2, &near) : nearest_to(s, c->place, c->most2, &near);
+    if (n > POINTS_MOST)
+        return false;
+    nearest->n = n;
+    sight_kin(s, sight);
+    if (s->def.pattern == PATTERN_OPEN || n == 0)
+        return true;
+    if (listed && q->n_rivals <= POINTS_MOST) {
+        Points listed_rivals = {q->n_rivals, q->rival.v, q->rival.x, q->rival.y};
+        n = points_rivals(&listed_rivals, c->place, &near, s->reach != NULL, &far, FEW);
+    } else {
+        n = rivals(s, c->place, &near, &far, FEW);
+    }
+    if (n > FEW)
+        return false;
+    rival->n = n;
+    for (uint32_t j = 0; j < rival->n; j++)
+        for (uint32_t i = 0; i < MIN(nearest->n, SIGHT_GUARDS); i++)
+            sight->apart2[j][i] = vec_dist2(vec2(nearest->x[i], nearest->y[i]), vec2(rival->x[j], rival->y[j]));
+    return true;
+}
