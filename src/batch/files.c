@@ -90,24 +90,9 @@ static gboolean sync_path(const char *path, int how, GError **error)
     return ok;
 }
 
-/* All of the file system at once: of ten files each alone would wait for its own entry in the journal. */
-static bool sync_at_once(const char *folder)
-{
-#ifdef __linux__
-    int dir = g_open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
-    bool ok = dir >= 0 && syncfs(dir) == 0;
-    if (dir >= 0)
-        close(dir);
-    return ok;
-#else
-    return false;
-#endif
-}
-
+/* File by file: syncfs would wait for what all other programs have in hand, too. */
 gboolean batch_sync_folder(const char *folder, GError **error)
 {
-    if (sync_at_once(folder))
-        return TRUE; /* if not, for others' files perhaps, its own will tell */
     GDir *dir = g_dir_open(folder, 0, error);
     const char *name;
     gboolean ok = dir != NULL;

@@ -9,6 +9,7 @@
 #include "batch/page_private.h"
 #include "batch/private.h"
 #include "batch/sheet_label.h"
+#include "batch/sheet_private.h"
 #include "image/staged.h"
 #include "page-resources.h"
 
@@ -58,18 +59,72 @@ static void put_key(const Sweep *s, uint32_t k, GString *text)
     g_free(label);
 }
 
+/* What captions tell: as on the sheet. */
+static void put_told(const Sweep *s, bool specimen, GString *text)
+{
+    GArray *items = g_array_new(FALSE, FALSE, sizeof(SheetItem));
+    const SheetPlan plan = {.s = s, .specimen = specimen};
+    for (uint32_t k = 0; k < sweep_keys(s); k++) {
+        SweepKey key = sweep_key(s, k);
+        SheetItem item = {k, key.axis};
+        if (key.varies && (key.id >= 0 || key.levels > 0)) /* seeds that differ everywhere tell nothing */
+            g_array_append_val(items, item);
+    }
+    sheet_choose(&plan, items);
+    g_string_append(text, ",\"told\":[");
+    for (guint i = 0; i < items->len; i++) {
+        g_string_append(text, i ? "," : "");
+        page_string(text, sweep_key(s, g_array_index(items, SheetItem, i).key).key);
+    }
+    g_string_append_c(text, ']');
+    g_array_free(items, TRUE);
+}
+
+/* A file's path as it is from the sweep file's folder, so that it is the same wherever the sweep was started. Free it. */
+static char *from_folder(const char *folder, const char *path)
+{
+    if (g_path_is_absolute(path) || !*path)
+        return g_strdup(path);
+    char *from = g_canonicalize_filename(folder, NULL), *to = g_canonicalize_filename(path, NULL);
+    char **down = g_strsplit(from + 1, "/", -1), **part = g_strsplit(to + 1, "/", -1);
+    gsize same = 0;
+    while (down[same] && part[same] && *down[same] && strcmp(down[same], part[same]) == 0)
+        same++;
+    GString *s = g_string_new(NULL);
+    for (gsize i = same; down[i] && *down[i]; i++)
+        g_string_append(s, "../");
+    for (gsize i = same; part[i]; i++)
+        g_string_append_printf(s, "%s%s", part[i], part[i + 1] ? "/" : "");
+    g_strfreev(down);
+    g_strfreev(part);
+    g_free(from);
+    g_free(to);
+    return g_string_free(s, FALSE);
+}
+
+/* The parameter file as the sweep file names it. */
+static const char *named_params(const Sweep *s, const char *folder)
+{
+    const char *path = sweep_params_path(s);
+    gsize n = strlen(folder);
+    return g_str_has_prefix(path, folder) && path[n] == '/' ? path + n + 1 : path;
+}
+
 /* What all variants were grown with over the parameter file's values, as arguments of --set. */
-static void put_settings(const Sweep *s, const Params *params, GString *text)
+static void put_settings(const Sweep *s, const Params *params, const char *folder, GString *text)
 {
     bool any = false;
     g_string_append(text, ",\"set\":[");
     for (int i = 0; i < PARAM_COUNT; i++) {
         char *now = params_format(params, (ParamId)i), *before = params_format(sweep_params(s), (ParamId)i);
         if (strcmp(now, before) != 0) {
-            char *assignment = g_strdup_printf("%s.%s=%s", param_info((ParamId)i)->section, param_info((ParamId)i)->key, now);
+            const ParamInfo *info = param_info((ParamId)i);
+            char *value = info->type == TYPE_FILE ? from_folder(folder, now) : g_strdup(now);
+            char *assignment = g_strdup_printf("%s.%s=%s", info->section, info->key, value);
             g_string_append(text, any ? "," : "");
             page_string(text, assignment);
             g_free(assignment);
+            g_free(value);
             any = true;
         }
         g_free(now);
@@ -78,7 +133,7 @@ static void put_settings(const Sweep *s, const Params *params, GString *text)
     g_string_append_c(text, ']');
 }
 
-static void put_sweep(const Sweep *s, const Params *params, const char *title, uint64_t chunks, GString *text)
+static void put_sweep(const Sweep *s, const Params *params, const char *title, bool specimen, uint64_t chunks, GString *text)
 {
     static const char *const mode[] = {"grid", "zip", "sample"};
     char *folder = g_path_get_dirname(sweep_path(s)), *file = g_path_get_basename(sweep_path(s));
@@ -86,9 +141,9 @@ static void put_sweep(const Sweep *s, const Params *params, const char *title, u
     member(text, "title", title);
     member(text, "file", file);
     member(text, "mode", mode[sweep_mode(s)]);
-    member(text, "params", sweep_params_path(s));
-    member(text, "folder", folder); /* where FILE values start */
-    put_settings(s, params, text);
+    member(text, "params", named_params(s, folder)); /* it and all FILE values start in the sweep file's folder */
+    put_settings(s, params, folder, text);
+    put_told(s, specimen, text);
     g_string_append_printf(text, ",\"count\":%" G_GUINT64_FORMAT ",\"chunks\":%" G_GUINT64_FORMAT ",\"keys\":[", sweep_count(s), chunks);
     for (uint32_t k = 0; k < sweep_keys(s); k++)
         put_key(s, k, text);
@@ -183,7 +238,7 @@ gboolean page_write(const Sweep *s, const Params *params, const char *out, const
     const char *title = def->title ? def->title : own;
     gboolean ok = make_folder(out, error) && (!def->staging || make_folder(def->staging, error));
     ok = ok && write_chunks(s, out, chunks, def, error);
-    put_sweep(s, params, title, chunks, text);
+    put_sweep(s, params, title, def->specimen, chunks, text);
     ok = ok && write_text(out, def, "page/sweep.js", text, error);
     g_string_truncate(text, 0);
     add_resource(text, "page.html", title);

@@ -7,6 +7,7 @@
 
 typedef struct {
     const char *title;   /* NULL: the sweep file's name */
+    gboolean specimen;   /* as SheetDef's: what captions tell */
     const char *staging; /* where files are made; NULL: beside their places */
     Watch watch;
 } PageDef;

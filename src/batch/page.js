@@ -288,7 +288,8 @@ function buildFilters() {
   const aside = $("filters"), outcome = columns.get("@outcome");
   outcome.label = "outcome";
   if (outcome.distinct.size > 1) widgets.push(choiceFilter(outcome, v => OUTCOME[v]));
-  for (const c of varying()) widgets.push(filterOf(c));
+  const lists = c => c.type === "points"; // long, and hardly a help: last
+  for (const c of [...varying().filter(c => !lists(c)), ...varying().filter(lists)]) widgets.push(filterOf(c));
   const more = results().filter(c => c.numeric || (c.distinct && c.distinct.size <= 12)).map(filterOf).filter(w => w);
   for (const w of widgets) if (w) aside.append(w.box);
   if (more.length) {
@@ -358,9 +359,8 @@ const TALLEST = 6e6; // pixels: browsers lay out no more than some ten million, 
 const grid = { columns: 1, width: 0, height: 0, shown: new Map(), lines: 0, tall: 0 };
 
 function captionColumns() {
-  const list = varying().filter(c => !c.distinct || c.distinct.size > 1), sorted = columns.get(state.sort);
-  if (sorted && sorted.name !== "@outcome") return [sorted, ...list.filter(c => c !== sorted)].slice(0, 2);
-  return list.slice(0, 2);
+  const list = sweep.told.map(columnOf).filter(c => !c.distinct || c.distinct.size > 1), sorted = columns.get(state.sort);
+  return sorted && sorted.name !== "@outcome" ? [sorted, ...list.filter(c => c !== sorted)].slice(0, 3) : list;
 }
 
 function measure() {
@@ -461,16 +461,15 @@ function later() { cancelAnimationFrame(waiting); waiting = requestAnimationFram
 
 const quote = s => /^[\w@%+=:,./-]+$/.test(s) ? s : "'" + s.replace(/'/g, "'\\''") + "'";
 
-// What grows this variant alone. Files start in the sweep file's folder.
+// What grows this variant alone, in the sweep file's folder, where files start.
 function command(row) {
   const words = ["venation grow " + quote(sweep.params)];
   const seed = at("seed", row);
   if (seed !== null && seed !== undefined) words.push("--seed " + quote(String(seed)));
   for (const assignment of sweep.set) words.push("--set " + quote(assignment));
   for (const k of sweep.keys) {
-    let v = at(k.key, row);
+    const v = at(k.key, row);
     if (k.key === "seed" || v === null) continue;
-    if (k.type === "file" && v && !v.startsWith("/") && sweep.folder !== ".") v = sweep.folder + "/" + v;
     words.push("--set " + quote(k.key + "=" + v));
   }
   words.push("-o " + quote("out/" + nameOf(row)));
@@ -513,7 +512,7 @@ function open(row) {
     fixed.length || (seed && !seed.key) ? make("h3", {}, "What stays") : null,
     fixed.length || (seed && !seed.key) ? table(seed && !seed.key ? [...fixed, seed] : fixed, row) : null,
     came.length ? make("h3", {}, "What came of it") : null, came.length ? table(came, row) : null,
-    make("h3", {}, "To grow it alone"), make("pre", {}, line),
+    make("h3", {}, "To grow it alone, in the folder of " + sweep.file), make("pre", {}, line),
     make("button", { type: "button", onclick: e => { navigator.clipboard?.writeText(line).then(() => { e.target.textContent = "Copied"; }, () => {}); } }, "Copy"),
     files.length ? make("h3", {}, "Files") : null,
     files.length ? make("ul", {}, ...files.map(f => make("li", {}, make("a", { href: folder + "/" + path(f), target: "_blank", rel: "noopener" }, f)))) : null);

@@ -78,7 +78,7 @@ static int collect(Sweeping *w, BatchCount *count)
 {
     GError *error = NULL;
     const SheetDef sheet = {.cell = (uint32_t)w->cell, .specimen = w->def.specimen, .staging = w->def.staging, .watch = w->def.watch};
-    const PageDef page = {.title = w->name, .staging = w->def.staging, .watch = w->def.watch};
+    const PageDef page = {.title = w->name, .specimen = w->def.specimen, .staging = w->def.staging, .watch = w->def.watch};
     w->phase = "  collecting: manifest";
     gboolean ok = manifest_write(&w->def, count, &error);
     w->phase = "  collecting: data set";

@@ -82,6 +82,26 @@ static char *collect_command(const Sweeping *w)
     return g_string_free(s, FALSE);
 }
 
+/* "sheet.png, " or, where one does not hold all, "sheet.png … sheet-3.png, ". */
+static char *sheet_names(const Sweeping *w)
+{
+    guint last = 1;
+    for (bool found = true; found; last += found) {
+        char *path = g_strdup_printf("%s/sheet-%u.png", w->dir, last + 1);
+        found = g_file_test(path, G_FILE_TEST_EXISTS);
+        g_free(path);
+    }
+    return last > 1 ? g_strdup_printf("sheet.png … sheet-%u.png, ", last) : g_strdup("sheet.png, ");
+}
+
+/* What is in the folder beside the leaves. */
+static void tell_written(const Sweeping *w, const char *dir)
+{
+    char *sheets = w->cell ? sheet_names(w) : g_strdup("");
+    fprintf(stderr, "%s: %s%s%smanifest.csv, manifest.jsonl, leaves\n", dir, w->args->dataset ? "dataset, " : "", sheets, w->cell ? "index.html, " : "");
+    g_free(sheets);
+}
+
 void sweeping_summarise(const Sweeping *w, const BatchState *end, uint64_t failed, uint64_t missing)
 {
     GString *s = g_string_new(NULL);
@@ -100,7 +120,7 @@ void sweeping_summarise(const Sweeping *w, const BatchState *end, uint64_t faile
         if (w->args->shard)
             fprintf(stderr, "%s: part %" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT "; after the last one: %s\n", dir, w->shard, w->shards, command);
         else
-            fprintf(stderr, "%s: %s%smanifest.csv, manifest.jsonl, leaves\n", dir, w->args->dataset ? "dataset, " : "", w->cell ? "sheet.png, index.html, " : "");
+            tell_written(w, dir);
         g_free(command);
         if (!w->args->shard)
             tell_others(w);

@@ -294,7 +294,8 @@ static void leaf_fill(const Nearest *f, const Square *q, List *l, Leaf *b, uint8
         b->least[i] = (float)f->limit;
         b->which[i] = 0xFFFFFFFFu;
     }
-    memset(quarters, 0, l->n);
+    for (uint32_t i = 0; i < l->n; i++)
+        quarters[i] = 0;
     for (uint32_t k = 0; k < 4; k++) {
         float least = list_measure(l, (float)q->x + ((float)(k & 1) + 0.5f) * side, (float)q->y + ((float)(k >> 1) + 0.5f) * side);
         float most = worth(f, least, side);

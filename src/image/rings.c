@@ -43,6 +43,8 @@ static inline void clip_known(const Vec2 *v, uint32_t n, const double *beyond, R
 void ring_clip(const Vec2 *v, uint32_t n, Vec2 normal, double bound, Rings *out)
 {
     enum { FEW = 64 };
+    if (n == 0)
+        return;
     double few[FEW], *beyond = n <= FEW ? few : g_new(double, n);
     for (uint32_t i = 0; i < n; i++)
         beyond[i] = vec_dot(v[i], normal) - bound;

@@ -12,6 +12,8 @@ typedef struct {
 
 typedef struct {
     GArray *knot; /* nodes of one run */
+    GArray *apart;  /* from each of them to the next one, pixels */
+    GArray *number; /* scratch */
     GArray *line; /* the smooth curve through them, as a polyline */
     GArray *kept; /* indices into line */
     GArray *stack;
@@ -27,6 +29,11 @@ static const double length_loss = 0.0005;
 static Knot *knots(GArray *a)
 {
     return (Knot *)(void *)a->data;
+}
+
+static double *numbers(GArray *a)
+{
+    return (double *)(void *)a->data;
 }
 
 /* Edges by vein, and along each vein from its origin on: tails grow along a vein. */
@@ -61,13 +68,15 @@ static Vec2 to_image(const Frame *f, Vec2 p)
  */
 static void collect_knots(Builder *b, const Network *net, const Frame *frame, const uint32_t *edge, uint32_t n)
 {
-    g_array_set_size(b->knot, 0);
+    g_array_set_size(b->knot, n + 1);
+    g_array_set_size(b->apart, n + 1);
+    Knot *k = knots(b->knot);
     for (uint32_t i = 0; i <= n; i++) {
         uint32_t in = edge[i > 0 ? i - 1 : 0], out = edge[i < n ? i : n - 1];
         uint32_t node = i < n ? net->tail[out] : net->head[in];
-        Knot k = {to_image(frame, net->node[node]), 0.25 * frame->scale * (net->width[in] + net->width[out]),
-                  net->birth[out]};
-        g_array_append_val(b->knot, k);
+        k[i] = (Knot){to_image(frame, net->node[node]), 0.25 * frame->scale * (net->width[in] + net->width[out]), net->birth[out]};
+        if (i > 0)
+            numbers(b->apart)[i - 1] = vec_dist(k[i - 1].p, k[i].p);
     }
 }
 
@@ -75,18 +84,31 @@ static void collect_knots(Builder *b, const Network *net, const Frame *frame, co
  * are averaged along the vein over `blend` radii to either side, less near its tip, and at its origin over what lies ahead:
  * there several veins may leave at once, and what stands for all of them would be a bulb. sum[i] is the integral of the
  * radius up to knot i, at[i] the arc length. */
-static double integral(const double *at, const double *sum, const Knot *k, uint32_t n, double s)
+static double integral(const double *at, const double *sum, const Knot *k, uint32_t lo, double s)
 {
-    uint32_t lo = 0, hi = n - 1;
-    while (hi - lo > 1) {
+    double d = s - at[lo], step = at[lo + 1] - at[lo], slope = step > 0.0 ? (k[lo + 1].r - k[lo].r) / step : 0.0;
+    return sum[lo] + d * (k[lo].r + 0.5 * d * slope);
+}
+
+/* The last knot but the very last one that lies no farther than s, near knot `from`. */
+static uint32_t knot_before(const double *at, uint32_t n, uint32_t from, double s)
+{
+    enum { STEPS = 16 };
+    uint32_t lo = MIN(from, n - 2), hi, steps = 0;
+    while (lo > 0 && at[lo] > s && steps++ < STEPS)
+        lo--;
+    while (lo + 2 < n && at[lo + 1] <= s && steps++ < STEPS)
+        lo++;
+    if (steps < STEPS)
+        return lo;
+    for (lo = 0, hi = n - 1; hi - lo > 1;) {
         uint32_t mid = lo + (hi - lo) / 2;
         if (at[mid] <= s)
             lo = mid;
         else
             hi = mid;
     }
-    double d = s - at[lo], step = at[hi] - at[lo], slope = step > 0.0 ? (k[hi].r - k[lo].r) / step : 0.0;
-    return sum[lo] + d * (k[lo].r + 0.5 * d * slope);
+    return lo;
 }
 
 static void blend_radii(Builder *b)
@@ -94,27 +116,31 @@ static void blend_radii(Builder *b)
     static const double blend = 2.5;
     uint32_t n = b->knot->len;
     Knot *k = knots(b->knot);
-    double *at = g_new0(double, 3 * n), *sum = at + n, *mean = sum + n;
+    const double *apart = numbers(b->apart);
+    g_array_set_size(b->number, 3 * n);
+    double *at = numbers(b->number), *sum = at + n, *mean = sum + n;
+    at[0] = sum[0] = 0.0;
     for (uint32_t i = 1; i < n; i++) {
-        at[i] = at[i - 1] + vec_dist(k[i - 1].p, k[i].p);
+        at[i] = at[i - 1] + apart[i - 1];
         sum[i] = sum[i - 1] + 0.5 * (at[i] - at[i - 1]) * (k[i - 1].r + k[i].r);
     }
     for (uint32_t i = 0; i < n; i++) {
         double ahead = MIN(blend * k[i].r, at[n - 1] - at[i]), back = MIN(ahead, at[i]), span = ahead + back;
-        mean[i] = span > 0.0
-                      ? (integral(at, sum, k, n, at[i] + ahead) - integral(at, sum, k, n, at[i] - back)) / span
-                      : k[i].r;
+        mean[i] = k[i].r;
+        if (span > 0.0) {
+            double to = at[i] + ahead, from = at[i] - back;
+            mean[i] = (integral(at, sum, k, knot_before(at, n, i, to), to) - integral(at, sum, k, knot_before(at, n, i, from), from)) / span;
+        }
     }
     for (uint32_t i = 0; i < n; i++)
         k[i].r = mean[i];
-    g_free(at);
 }
 
 /* Slope of the curve at knot i against arc length along the chords; nodes may be unevenly spaced. */
-static Vec2 tangent(const Knot *k, uint32_t i, uint32_t last)
+static Vec2 tangent(const Knot *k, const double *apart, uint32_t i, uint32_t last)
 {
     uint32_t lo = i > 0 ? i - 1 : 0, hi = i < last ? i + 1 : last;
-    double d0 = vec_dist(k[lo].p, k[i].p), d1 = vec_dist(k[i].p, k[hi].p);
+    double d0 = i > 0 ? apart[lo] : 0.0, d1 = i < last ? apart[i] : 0.0;
     Vec2 v0 = d0 > 0.0 ? vec_scale(vec_sub(k[i].p, k[lo].p), 1.0 / d0) : vec2(0.0, 0.0);
     Vec2 v1 = d1 > 0.0 ? vec_scale(vec_sub(k[hi].p, k[i].p), 1.0 / d1) : vec2(0.0, 0.0);
     if (d0 == 0.0)
@@ -145,19 +171,23 @@ static uint32_t cuts(const Builder *b, Vec2 chord, Vec2 m0, Vec2 m1)
 static void smooth(Builder *b)
 {
     const Knot *k = knots(b->knot);
-    uint32_t last = b->knot->len - 1;
-    g_array_set_size(b->line, 0);
+    const double *apart = numbers(b->apart);
+    uint32_t last = b->knot->len - 1, n_line = 0;
+    g_array_set_size(b->line, last * MAX_CUTS + 1);
+    Knot *line = knots(b->line);
+    Vec2 here = tangent(k, apart, 0, last);
     for (uint32_t i = 0; i < last; i++) {
-        double d = vec_dist(k[i].p, k[i + 1].p);
-        Vec2 m0 = vec_scale(tangent(k, i, last), d), m1 = vec_scale(tangent(k, i + 1, last), d);
+        double d = apart[i];
+        Vec2 next = tangent(k, apart, i + 1, last), m0 = vec_scale(here, d), m1 = vec_scale(next, d);
         uint32_t n = cuts(b, vec_sub(k[i + 1].p, k[i].p), m0, m1);
         for (uint32_t j = 0; j < n; j++) {
             double t = (double)j / n;
-            Knot q = {hermite(k[i].p, m0, k[i + 1].p, m1, t), k[i].r + (k[i + 1].r - k[i].r) * t, k[i].birth};
-            g_array_append_val(b->line, q);
+            line[n_line++] = (Knot){hermite(k[i].p, m0, k[i + 1].p, m1, t), k[i].r + (k[i + 1].r - k[i].r) * t, k[i].birth};
         }
+        here = next;
     }
-    g_array_append_val(b->line, k[last]);
+    line[n_line++] = k[last];
+    g_array_set_size(b->line, n_line);
 }
 
 /* The point between i and j that a straight piece would miss worst, when it misses one by more than the tolerance; else
@@ -263,6 +293,8 @@ Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol
     uint32_t *edge = edges_by_vein(net);
     Builder b = {.tol = tol, .out = g_new0(Strokes, 1)};
     b.knot = g_array_new(FALSE, FALSE, sizeof(Knot));
+    b.apart = g_array_new(FALSE, FALSE, sizeof(double));
+    b.number = g_array_new(FALSE, FALSE, sizeof(double));
     b.line = g_array_new(FALSE, FALSE, sizeof(Knot));
     b.kept = g_array_new(FALSE, FALSE, sizeof(uint32_t));
     b.stack = g_array_new(FALSE, FALSE, sizeof(uint32_t));
@@ -280,6 +312,8 @@ Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol
         emit(&b, net->vein[e[0]], net->order[e[0]]);
     }
     g_array_free(b.knot, TRUE);
+    g_array_free(b.apart, TRUE);
+    g_array_free(b.number, TRUE);
     g_array_free(b.line, TRUE);
     g_array_free(b.kept, TRUE);
     g_array_free(b.stack, TRUE);

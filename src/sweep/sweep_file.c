@@ -1,6 +1,7 @@
 /* Reading a sweep file. Lines are as in parameter files. */
-#include <errno.h>
+#include <glib/gstdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "geom/textfile.h"
 #include "param/private.h"
@@ -55,17 +56,21 @@ static char *in_folder(const Sweep *s, const char *file)
     return g_path_is_absolute(file) || strcmp(s->folder, ".") == 0 ? g_strdup(file) : g_build_filename(s->folder, file, NULL);
 }
 
+/* Says which line names the file that an error is of. Returns FALSE. */
+static gboolean name_line(const Reader *r, const char *key, GError **error)
+{
+    char *name = g_filename_display_name(r->spot.path);
+    g_prefix_error(error, "%s:%u: [sweep] %s: ", name, r->spot.line, key);
+    g_free(name);
+    return FALSE;
+}
+
 static gboolean read_params(Reader *r, const char *value, GError **error)
 {
     Sweep *s = r->sweep;
     s->params_path = in_folder(s, value);
     s->params = params_load(s->params_path, error);
-    if (s->params)
-        return TRUE;
-    char *name = g_filename_display_name(r->spot.path);
-    g_prefix_error(error, "%s:%u: [sweep] params: ", name, r->spot.line);
-    g_free(name);
-    return FALSE;
+    return s->params || name_line(r, "params", error);
 }
 
 /* A column's or line's key, which stands in the file for the first time. */
@@ -84,6 +89,8 @@ static gboolean read_table(Reader *r, const char *value, GError **error)
     char *path = in_folder(r->sweep, value);
     Spot spot = {path, 0, true};
     gboolean good = sweep_axis_read_table(&axis, path, error);
+    if (!good && (g_access(path, R_OK) != 0 || g_file_test(path, G_FILE_TEST_IS_DIR))) /* else the error names a line of its own */
+        name_line(r, "table", error);
     for (uint32_t f = 0; f < axis.fields && good; f++)
         good = note_key(r, axis.field[f].key, &spot, error);
     g_free(path);

@@ -5,8 +5,8 @@
 
 Grows LEAVES (default 60) variants of SWEEP (species.ini) as a data set at 512 pixels, and a fifth as many with the full set of maps at 2048, tied to one
 processor and to all of them. Where perf can be used, a run on one processor tells what part of the time goes into what. Then 10 and 10 000 variants of
-a leaf that takes no time, for the peak memory. --quick: a fifth of the leaves, and 10 and 1000 variants. It prints and does not judge; on a machine that
-does other things as well, go by the leaves a minute of processor time.
+a leaf that takes no time, for the peak memory. --quick: a fifth of the leaves, and 10 and 1000 variants. Exit status 1 if the many take
+5 MB more than the ten; of speed it does not judge: on a machine that does other things as well, go by the leaves a minute of processor time.
 
 What bounds it: of a training leaf, painting takes a good half, most of it the exact union of strokes in each pixel, growing a quarter, and PNG files a twenty-fifth.
 Of a full set at 2048 writing takes a good half, nearly all of it zlib's, and painting a fifth. Leaves share nothing but memory and caches.
@@ -31,6 +31,7 @@ density = 0.02
 birth_distance_sources = 3
 birth_distance_veins = 3
 """
+MOST_MORE = 5  # MB: what a full sheet takes over one of ten; half a KiB a variant would be as much
 WRITERS = ("deflate.c", "png.c", "exr.c", "encode.c", "file.c", "staged.c")
 GROUPS = {"sim": "growing", "geom": "growing", "image": "painting", "batch": "sheet, masks, records"}
 
@@ -126,6 +127,7 @@ def main():
     parts = {}
     for what, options, count in (("512, data set", ["--size", "512", "--dataset"], leaves), ("2048, all maps", ["--size", "2048"], max(leaves // 5, 3))):
         parts[what] = rates(venation, sweep, text, what, options, count)
+    peaks = []
     for count in (10, 1000 if quick else 10000):
         with tempfile.TemporaryDirectory() as out:
             with open(f"{out}/tiny.ini", "w", encoding="utf-8") as file:
@@ -134,11 +136,14 @@ def main():
                 file.write(f"[sweep]\nparams = tiny.ini\nmode = sample\ncount = {count}\nseed = each\nwidth.exponent = uniform(2, 3)\n")
             seconds, processor, peak = timed([venation, "sweep", f"{out}/many.ini", "-o", f"{out}/out", "-q", "--write", "none", "--cell", "32"])
             print(f"| tiny, nothing written | all | {count} | {seconds:.1f} | {count / seconds * 60:.0f} | {count / processor * 60:.0f} | {peak:.0f} |", flush=True)
+            peaks.append(peak)
     for what, part in parts.items():
         if part:
             print(f"\n{what}: " + ", ".join(f"{name} {share:.0f} %" for name, share in part.most_common() if share >= 0.5))
         else:
             print(f"\n{what}: no perf, so no profile")
+    if peaks[1] - peaks[0] > MOST_MORE:
+        sys.exit(f"\nmemory goes with the number of variants: {peaks[0]:.1f} MB, then {peaks[1]:.1f}")
 
 
 if __name__ == "__main__":

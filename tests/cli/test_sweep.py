@@ -119,6 +119,18 @@ def test_table_of_rows_says_the_same():
             same(float(cell) if isinstance(value, (int, float)) else (cell or None), value, name)
 
 
+def test_sheets_are_told():
+    sweep_file("[sweep]\nparams = leaf.ini\nseed = from 1 to 3 by 1\n")
+    small = ["--write", "none", "--set", "growth.final_length=22"]
+    holds(sweep("many.ini", *small, "--cell", "32").err, "out/many: sheet.png, index.html, manifest.csv")
+    holds(sweep("many.ini", *small, "--cell", "0", "--replace").err, "out/many: manifest.csv")
+    sweep_file("[sweep]\nparams = leaf.ini\nmode = sample\ncount = 1201\nseed = each\nwidth.exponent = uniform(2, 3)\n", "large.ini")
+    sweep("large.ini", *small, "--cell", "32", "--shard", "1/60", "-q")
+    result = sweep("large.ini", *small, "--cell", "32", "--collect", status=3)
+    same(sorted(n for n in os.listdir("out/large") if n.endswith(".png")), ["sheet-2.png", "sheet-3.png", "sheet.png"])
+    holds(result.err, "out/large: sheet.png … sheet-3.png, index.html, manifest.csv")
+
+
 def test_zip_and_sample():
     sweep(sweep_file("[sweep]\nparams = leaf.ini\nmode = zip\nveins.kill_distance = 1; 2; 4\nwidth.minimum = 0.5; 0.4; 0.3\n"), "-q", "--write", "none")
     same([(r["veins.kill_distance"], r["width.minimum"]) for r in rows("out/many")], [(1, 0.5), (2, 0.4), (4, 0.3)])
@@ -248,6 +260,54 @@ def test_dry_run_leaves_nothing_behind():
     result = run("sweep", "many.ini", "--dry-run", env=environment(TMPDIR="/dev/null/x"))
     same(result.status, 1)
     holds(result.err, "/dev/null")
+
+
+# --- the paper's figure, and the README ---------------------------------------------------------------------------
+
+def params_here():
+    """A folder sweeps of one's own, with what params/sweeps has above it."""
+    os.mkdir("sweeps")
+    for name in os.listdir(PARAMS):
+        if name != "sweeps":
+            os.symlink(os.path.join(PARAMS, name), name)
+
+
+def captions(name):
+    """What a sheet says at each leaf: letter, labels and values."""
+    with open(name, encoding="utf-8") as file:
+        lines = re.findall(r'<text [^>]*text-anchor="middle">(.*?)</text>', file.read())
+    return [" ".join(re.findall(r">([^<]+)<", line)) for line in lines]
+
+
+def test_kill_distances_of_figure_9():
+    sweep(f"{PARAMS}/sweeps/kill-distance.ini", "-q", "--size", "64", "--write", "none", "-o", "out")
+    found = rows("out")
+    same([(r["veins.kill_distance"], r["width.minimum"]) for r in found], [(40, 2), (20, 1.1), (10, 0.6), (5, 0.45), (1, 0.35)])
+    same([c for c in captions("out/sheet.svg") if "kill distance" in c], [f"{letter} kill distance {d}" for letter, d in zip("abcde", (40, 20, 10, 5, 1))])
+    nodes = [r["nodes"] for r in found]
+    same(all(many > 1.2 * few for few, many in zip(nodes, nodes[1:])), True, f"the smaller the distance the more veins: {nodes}")
+
+
+def test_dart_densities_of_figure_9():
+    sweep(f"{PARAMS}/sweeps/dart-density.ini", "-q", "--size", "64", "--write", "none", "-o", "out")
+    found = rows("out")
+    same([r["sources.density"] for r in found], [0.00006, 0.0003, 0.006])
+    same(captions("out/sheet.svg"), ["a 0.00006", "b 0.0003", "c 0.006"])
+    nodes = [r["nodes"] for r in found]
+    same(nodes[0] < nodes[1] < nodes[2], True, f"the more darts the more veins: {nodes}")
+
+
+def test_sweep_files_in_the_readme():
+    """Each block is a sweep file, of as many variants as the text or the lists say."""
+    with open(os.path.join(os.path.dirname(PARAMS), "README.md"), encoding="utf-8") as file:
+        blocks = [b for b in re.findall(r"(?ms)^```ini\n(.*?)^```$", file.read()) if "[sweep]" in b]
+    params_here()
+    numbers = []
+    for i, block in enumerate(blocks):
+        lines = sweep(write(f"sweeps/readme-{i}.ini", block), "--dry-run", "-q").out.splitlines()
+        same([int(line.split()[0]) for line in lines], list(range(len(lines))))
+        numbers.append(len(lines))
+    same(numbers, [9, 500])
 
 
 # --- training data ------------------------------------------------------------------------------------------------
@@ -448,6 +508,26 @@ def test_threads_shards_and_order():
     same(contents("shards") == wanted, True, "three shards")
 
 
+def test_however_the_file_is_named():
+    """By an absolute path, from elsewhere: no byte tells where the run began."""
+    os.mkdir("there")
+    for name in ("leaf.ini", "blade.svg", "many.ini"):
+        sweep_file()
+        os.rename(name, f"there/{name}")
+    options = ["-q", "--set", "leaf.title=x", "--set", "outline.file=there/blade.svg"]
+    sweep("there/many.ini", "-o", "relative", *options)
+    sweep(os.path.abspath("there/many.ini"), "-o", "absolute", *options)
+    same([n for n, data in contents("relative").items() if data != contents("absolute")[n]], [])
+    # As the page says it is grown alone.
+    row = rows("relative")[3]
+    with open("relative/page/sweep.js", encoding="utf-8") as file:
+        told = json.loads(file.read().removeprefix("venationSweep(").removesuffix(");\n"))
+    os.chdir("there")
+    chosen = [word for one in [*told["set"], *(f"{k['key']}={row[k['key']]}" for k in told["keys"] if k["key"] != "seed")] for word in ("--set", one)]
+    same(run("grow", told["params"], "-q", "--seed", str(row["seed"]), "-o", "alone", "--maps", "none", *chosen).status, 0)
+    same(json.loads(contents("alone")["leaf.json"])["network"]["hash"], row["network_hash"])
+
+
 def kill_often(*options, wanted=10):
     """Kills runs at moments from beginning to end of a whole one, until so many were killed at work; one that was faster makes room for a new one."""
     began = time.monotonic()
@@ -559,17 +639,31 @@ def peak(*args):
     return used.ru_maxrss
 
 
+TINY = """\
+[growth]
+kind = isogonic
+initial_length = 10
+final_length = 12
+step = 1
+[sources]
+density = 0.02
+birth_distance_sources = 3
+birth_distance_veins = 3
+"""
+
+
 def test_memory_does_not_go_with_the_number():
-    """Less than a row of the manifest takes, for each leaf; and a sheet of large cells little more than one of few."""
+    """Less than 1 KiB a leaf: a row of the manifest takes as much; and a sheet of large cells little more than one of few."""
     with open(VENATION, "rb") as file:
         if b"__asan_init" in file.read():
             raise Skip("a sanitizer keeps what is freed")
-    for few, many, most, options in ((100, 700, 2400, ["--write", "none", "--cell", "32"]), (30, 150, 1600, ["--dataset", "--size", "32", "--cell", "32"]),
+    for few, many, most, options in ((650, 1650, 1000, ["--write", "none", "--cell", "16"]), (150, 450, 600, ["--dataset", "--size", "16", "--cell", "0"]),
                                      (10, 160, 7000, ["--write", "none", "--cell", "320"])):
         used = []
         for count in (few, many):
-            sweep_file(f"[sweep]\nparams = leaf.ini\nseed = from 1 to {count} by 1\n")
-            what = ["many.ini", "-o", f"{count}-{most}", "--set", "growth.final_length=22", *options]
+            write("leaf.ini", TINY)
+            write("many.ini", f"[sweep]\nparams = leaf.ini\nseed = from 1 to {count} by 1\n")
+            what = ["many.ini", "-o", f"{count}-{most}", *options]
             whole = peak(*what)
             used.append(peak(*what, "--collect") if "320" in options else whole)  # growing takes more than such a sheet
         if used[1] - used[0] > most:
@@ -585,7 +679,8 @@ def test_two_at_once():
     told = [one.communicate(timeout=TIMEOUT)[1].decode() for one in both]
     same([one.returncode for one in both], [0, 0], f"{told}")
     grown = sum(int(re.search(r"(\d+) lea", text).group(1)) for text in told)
-    if not 24 <= grown <= 27:
+    # Both may take one in the same moment, or the last that the other has in hand; more often where the machine lets one wait.
+    if not 24 <= grown < 36:
         raise AssertionError(f"{grown} grown of 24: {told}")
     same(files("out/many"), files("alone"))
     same(contents("out/many") == contents("alone"), True, "two at once")
@@ -817,6 +912,10 @@ def test_refusals():
         "mode = zip\nname = ../a; b\nveins.kill_distance = 1; 2": "would leave the folder",
         "mode = zip\nname = a; aux\nveins.kill_distance = 1; 2": "Windows",
         "veins.kill_distance = 1; 2\nseed = from 1 to 999999999 by 1": "many.ini:4: [sweep] seed: has 999999999 values",
+        "veins.kill_distance = from 1 to 1000 by 1\nseed = from 1 to 1000 by 1\ngrowth.final_length = from 50 to 60 in 1000":
+            "many.ini:3: [sweep] veins.kill_distance: has 1000 values, and 1000000000 variants are too many; there may be up to 999999999",
+        "mode = sample\ncount = 1000000000\nseed = each": "many.ini:4: [sweep] count = 1000000000: must be a whole number from 1 to 999999999",
+        "table = none.csv": "many.ini:3: [sweep] table: none.csv: can't read",
     }
     for lines, part in cases.items():
         sweep_file(f"[sweep]\nparams = leaf.ini\n{lines}\n")

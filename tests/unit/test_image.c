@@ -12,6 +12,7 @@
 #include "geom/dmath.h"
 #include "geom/parallel.h"
 #include "geom/random.h"
+#include "image/blur.h"
 #include "image/deflate.h"
 #include "image/encode.h"
 #include "image/file.h"
@@ -594,6 +595,49 @@ static void test_parallel(void)
             }
 }
 
+/* ---- blurring ---- */
+
+/* One box filter over n values `step` apart, by its definition. */
+static void plain_box(int32_t *px, uint32_t n, gsize step, int64_t half)
+{
+    int32_t *out = g_new(int32_t, n);
+    for (int64_t i = 0; i < n; i++) {
+        int64_t sum = 0;
+        for (int64_t k = MAX(i - half, 0); k <= MIN(i + half, (int64_t)n - 1); k++)
+            sum += px[(gsize)k * step];
+        out[i] = (int32_t)((double)sum * (1.0 / (2.0 * (double)half + 1.0)) + 0.5);
+    }
+    for (uint32_t i = 0; i < n; i++)
+        px[i * step] = out[i];
+    g_free(out);
+}
+
+static void test_blur(void)
+{
+    static const uint32_t size[][2] = {{1, 1}, {3, 40}, {17, 2}, {600, 33}, {257, 20}};
+    Pool *pool = pool_new(2);
+    for (gsize s = 0; s < G_N_ELEMENTS(size); s++)
+        for (uint32_t half = 0; half < 24; half = half < 7 ? half + 1 : half + 16) {
+            uint32_t w = size[s][0], h = size[s][1];
+            int32_t *px = g_new(int32_t, w * h), *twin = g_new(int32_t, w * h);
+            for (uint32_t i = 0; i < w * h; i++) {
+                uint32_t chance = random_block(5, RANDOM_TEXTURE, half, i).w[0];
+                px[i] = twin[i] = chance % 3 == 0 ? 1 << 30 : (int32_t)(chance >> 2);
+            }
+            image_blur(pool, px, w, h, half);
+            for (uint32_t y = 0; half > 0 && y < h; y++)
+                for (int k = 0; k < 2; k++)
+                    plain_box(twin + (gsize)y * w, w, 1, half);
+            for (uint32_t x = 0; half > 0 && x < w; x++)
+                for (int k = 0; k < 2; k++)
+                    plain_box(twin + x, h, w, half);
+            g_assert_true(memcmp(px, twin, w * h * sizeof *px) == 0);
+            g_free(px);
+            g_free(twin);
+        }
+    pool_free(pool);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -616,6 +660,7 @@ int main(int argc, char **argv)
     g_test_add_func("/image/banded", test_banded);
     g_test_add_func("/image/failures", test_failures);
     g_test_add_func("/image/parallel", test_parallel);
+    g_test_add_func("/image/blur", test_blur);
     int rc = g_test_run();
     g_rmdir(dir);
     g_free(dir);

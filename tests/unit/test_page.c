@@ -342,9 +342,9 @@ static void test_page_text(void)
 }
 
 /* The document as Chromium has it once all is loaded. */
-static char *browse(const Fixture *f, const char *hash)
+static char *browse(const Fixture *f, const char *page, const char *hash)
 {
-    char *path = g_build_filename(f->dir, "index.html", NULL), *profile = g_build_filename(f->dir, "profile", NULL), *own = g_strconcat("--user-data-dir=", profile, NULL),
+    char *path = g_build_filename(f->dir, page, NULL), *profile = g_build_filename(f->dir, "profile", NULL), *own = g_strconcat("--user-data-dir=", profile, NULL),
          *uri = g_filename_to_uri(path, NULL, NULL), *address = g_strconcat(uri, hash, NULL), *text = NULL;
     const char *argv[] = {"chromium", "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1300,900", "--virtual-time-budget=5000", own, "--dump-dom", address, NULL};
     int status = 0;
@@ -367,22 +367,34 @@ static uint32_t count_of(const char *text, const char *what)
     return n;
 }
 
-static void test_browser(void)
+/* Whether there is a browser that runs. ./run test installs one, so there it is no excuse that there is none. */
+static bool has_browser(const char *shown)
 {
     char *program = g_find_program_in_path("chromium");
+    bool good = program && (!shown || strstr(shown, "id=\"count\""));
+    const char *why = program ? "chromium doesn't run here" : "there is no chromium";
+    if (!good && g_strcmp0(g_getenv("VENATION_REQUIRE"), "all") == 0)
+        g_error("%s", why);
+    if (!good)
+        g_test_skip(why);
     g_free(program);
-    if (!program) {
-        g_test_skip("there is no chromium");
+    return good;
+}
+
+#define BROWSED "veins.kill_distance = 10; 20; 30; 40\nveins.pattern = open; closed\nleaf.title = " EVIL " | b\nwidth.exponent = uniform(2, 3)\n"
+
+static void test_browser(void)
+{
+    if (!has_browser(NULL))
         return;
-    }
-    Fixture f = make_sweep("veins.kill_distance = 10; 20; 30; 40\nveins.pattern = open; closed\nleaf.title = " EVIL " | b\nwidth.exponent = uniform(2, 3)\n");
+    Fixture f = make_sweep(BROWSED);
     put_rows(&f);
     write_page(&f, EVIL);
-    char *all = browse(&f, ""), *some = browse(&f, "#sort=-nodes&f.veins.pattern==open&f.veins.kill_distance==20&f.veins.kill_distance==40"),
-         *one = browse(&f, "#v=4"), *none = browse(&f, "#q=nothing+like+this");
-    if (!strstr(all, "id=\"count\"")) {
-        g_test_skip("chromium doesn't run here");
-    } else {
+    char *all = browse(&f, "index.html", ""), *some = NULL, *one = NULL, *none = NULL;
+    if (has_browser(all)) {
+        some = browse(&f, "index.html", "#sort=-nodes&f.veins.pattern==open&f.veins.kill_distance==20&f.veins.kill_distance==40");
+        one = browse(&f, "index.html", "#v=4");
+        none = browse(&f, "index.html", "#q=nothing+like+this");
         g_assert_nonnull(strstr(all, ">16 variants</p>"));
         g_assert_cmpuint(count_of(all, "class=\"leaf\""), ==, 16);
         g_assert_null(strstr(all, "<script>alert(1)</script>"));
@@ -392,6 +404,7 @@ static void test_browser(void)
         const char *first = strstr(some, "id=\"leaf-13\""), *second = strstr(some, "id=\"leaf-12\""), *third = strstr(some, "id=\"leaf-4\""), *last = strstr(some, "id=\"leaf-5\"");
         g_assert_true(first && second && third && last && first < second && second < third && third < last);
         g_assert_nonnull(strstr(one, "id=\"one-name\""));
+        g_assert_nonnull(strstr(one, "venation grow leaf.ini"));
         g_assert_nonnull(strstr(one, "--set veins.kill_distance=20"));
         g_assert_nonnull(strstr(one, "--seed 1"));
         g_assert_nonnull(strstr(none, ">0 of 16</p>"));
@@ -401,6 +414,156 @@ static void test_browser(void)
     g_free(some);
     g_free(one);
     g_free(none);
+    fixture_clear(&f);
+}
+
+/* What a hand does in the column of filters, and after each step a line of what is shown then. A browser without a window, whose time runs as it likes, draws
+ * next to no frames, so that what waits for one waits for the clock here. */
+static const char DRIVER[] =
+    "<pre id=\"driven\"></pre><script>\n"
+    "window.requestAnimationFrame = f => setTimeout(f, 16);\n"
+    "window.cancelAnimationFrame = clearTimeout;\n"
+    "const wait = () => new Promise(done => setTimeout(done, 200));\n"
+    "const box = label => [...document.querySelectorAll('fieldset')].find(b => b.querySelector('legend').firstChild.data === label);\n"
+    "const tell = step => document.getElementById('driven').append(step + ': ' + [...document.querySelectorAll('.leaf')].map(l => l.id.slice(5)).sort((a, b) => a - b)\n"
+    "  .join(' ') + ' | ' + document.getElementById('count').textContent + ' | ' + decodeURIComponent(location.hash) + '\\n');\n"
+    "const slide = (input, value) => { input.value = value; input.dispatchEvent(new Event('input', { bubbles: true })); };\n"
+    "const type = (input, value) => { input.value = value; input.dispatchEvent(new Event('change', { bubbles: true })); };\n"
+    "(async () => {\n"
+    "  while (!document.querySelector('.leaf')) await wait();\n"
+    "  const open = [...box('veins pattern').querySelectorAll('label')].find(l => l.querySelector('.text').textContent === 'open').querySelector('input');\n"
+    "  const [least, most] = box('width exponent').querySelectorAll('input[type=range]'), [low] = box('width exponent').querySelectorAll('input[type=number]');\n"
+    "  open.click(); await wait(); tell('box');\n"
+    "  slide(least, 400); await wait(); tell('both');\n"
+    "  open.click(); await wait(); tell('range');\n"
+    "  slide(most, 700); await wait(); tell('between');\n"
+    "  type(low, '2.5'); await wait(); tell('typed');\n"
+    "  box('width exponent').querySelector('.clear').click(); await wait(); tell('cleared');\n"
+    "})();\n"
+    "</script>\n</body>";
+
+/* "STEP: 1 2 … | COUNT | ADDRESS" is of the leaves that the parameters say. */
+static void check_driven(const Fixture *f, const char *shown, const char *step, bool open, double low, double high)
+{
+    GString *wanted = g_string_new(NULL);
+    guint n = 0;
+    g_string_append_printf(wanted, "%s:", step);
+    for (uint64_t i = 0; i < sweep_count(f->s); i++) {
+        SweepVariant v;
+        sweep_variant(f->s, i, &v);
+        double exponent = g_ascii_strtod(v.value[3], NULL);
+        if ((!open || strcmp(v.value[1], "open") == 0) && exponent >= low && exponent <= high) {
+            g_string_append_printf(wanted, " %" G_GUINT64_FORMAT, i);
+            n++;
+        }
+        sweep_variant_clear(&v);
+    }
+    g_string_append_printf(wanted, n < 16 ? " | %u of 16 |" : " | %u variants |", n);
+    if (!strstr(shown, wanted->str))
+        g_error("no '%s' in\n%s", wanted->str, shown);
+    g_string_free(wanted, TRUE);
+}
+
+/* A bound that the address has after a step. */
+static double bound(const char *shown, const char *step, bool upper)
+{
+    char *line = g_strdup_printf("%s:", step);
+    const char *at = strstr(shown, line);
+    at = at ? strstr(at, "f.width.exponent=") : NULL;
+    g_assert_nonnull(at);
+    char *end;
+    double low = g_ascii_strtod(at + strlen("f.width.exponent="), &end);
+    g_assert_true(g_str_has_prefix(end, ".."));
+    g_free(line);
+    return upper ? g_ascii_strtod(end + 2, NULL) : low;
+}
+
+static void test_filters(void)
+{
+    if (!has_browser(NULL))
+        return;
+    Fixture f = make_sweep(BROWSED);
+    put_rows(&f);
+    write_page(&f, "filters");
+    char *page = read_file(&f, "index.html"), **parts = g_strsplit(page, "</body>", 2), *driven = g_strjoinv(DRIVER, parts);
+    put(f.dir, "driven.html", driven);
+    char *document = browse(&f, "driven.html", ""), *shown = document ? strstr(document, "<pre id=\"driven\">") : NULL;
+    if (has_browser(document)) {
+        g_assert_nonnull(shown);
+        double low = bound(shown, "range", false), high = bound(shown, "between", true);
+        g_assert_true(low > 2.2 && low < 2.6 && high > low && high < 2.9); /* two fifths and seven tenths of what there is */
+        check_driven(&f, shown, "box", true, 0.0, 9.0);
+        check_driven(&f, shown, "both", true, low, 9.0);
+        check_driven(&f, shown, "range", false, low, 9.0);
+        check_driven(&f, shown, "between", false, low, high);
+        check_driven(&f, shown, "typed", false, 2.5, high);
+        check_driven(&f, shown, "cleared", false, 0.0, 9.0);
+    }
+    g_free(document);
+    g_free(driven);
+    g_strfreev(parts);
+    g_free(page);
+    fixture_clear(&f);
+}
+
+/* The captions tell what the sheet's do, and lists of points filter last. */
+static void test_captions(void)
+{
+    Fixture f = make_sweep("mode = sample\ncount = 30\nveins.seeds = 0,0 | 0,0; 0.1,0.2\nwidth.minimum = uniform(0.9, 1)\nwidth.exponent = uniform(2, 2.1)\nveins.kill_distance = uniform(1, 40)\n"
+                           "veins.pattern = choice(open; closed)\nseed = each\ntexture.lamina_colour = choice(#000000; #ffffff)\n");
+    put_rows(&f);
+    write_page(&f, NULL);
+    uint64_t none[2];
+    JsonNode *node = read_call(&f, "page/sweep.js", "venationSweep(", none);
+    JsonArray *told = json_object_get_array_member(json_node_get_object(node), "told");
+    static const char *const wanted[] = {"width.minimum", "veins.kill_distance", "veins.pattern"};
+    g_assert_cmpuint(json_array_get_length(told), ==, 3);
+    for (guint i = 0; i < 3; i++)
+        g_assert_cmpstr(json_array_get_string_element(told, i), ==, wanted[i]);
+    json_node_unref(node);
+    char *all = has_browser(NULL) ? browse(&f, "index.html", "") : NULL;
+    if (all && has_browser(all)) {
+        g_assert_cmpuint(count_of(all, "<span class=\"label\">kill distance </span>"), >, 10);
+        g_assert_cmpuint(count_of(all, "<span class=\"label\">veins seeds </span>"), ==, 0);
+        const char *last = strstr(all, "filter of veins seeds\""), *before = strstr(all, "filter of lamina colour\"");
+        g_assert_true(last && before && before < last);
+    }
+    g_free(all);
+    fixture_clear(&f);
+}
+
+/* The same bytes whatever way the sweep file was named. */
+static void test_paths(void)
+{
+    static const char text[] = "[sweep]\nparams = leaf.ini\nveins.kill_distance = 1; 2\n";
+    GError *error = NULL;
+    Fixture f = make_sweep("veins.kill_distance = 1; 2\n");
+    char *here = g_get_current_dir(), *name = g_path_get_basename(f.dir), *wanted = NULL;
+    g_assert_cmpint(g_chdir(f.dir), ==, 0);
+    char *paths[] = {g_strdup("some-sweep.ini"), g_strdup("./some-sweep.ini"), g_build_filename(f.dir, "some-sweep.ini", NULL), g_strdup_printf("../%s/some-sweep.ini", name)};
+    for (gsize i = 0; i < G_N_ELEMENTS(paths); i++) {
+        Sweep *s = sweep_parse(text, strlen(text), paths[i], &error);
+        g_assert_no_error(error);
+        Params *p = params_copy(sweep_params(s));
+        g_assert_true(params_override(p, "outline.file=../leaves/a b.svg", &error));
+        g_assert_true(page_write(s, p, f.dir, &(PageDef){0}, &error));
+        g_assert_no_error(error);
+        char *found = read_file(&f, "page/sweep.js");
+        g_assert_nonnull(strstr(found, "\"params\":\"leaf.ini\""));
+        g_assert_nonnull(strstr(found, "\"outline.file=../leaves/a b.svg\""));
+        if (wanted)
+            g_assert_cmpstr(found, ==, wanted);
+        else
+            wanted = g_strdup(found);
+        g_free(found);
+        g_free(paths[i]);
+        params_free(p);
+        sweep_free(s);
+    }
+    g_assert_cmpint(g_chdir(here), ==, 0);
+    g_free(wanted);
+    g_free(name);
+    g_free(here);
     fixture_clear(&f);
 }
 
@@ -420,6 +583,9 @@ int main(int argc, char **argv)
     g_test_add_func("/page/data", test_data);
     g_test_add_func("/page/large", test_large);
     g_test_add_func("/page/text", test_page_text);
+    g_test_add_func("/page/paths", test_paths);
     g_test_add_func("/page/browser", test_browser);
+    g_test_add_func("/page/filters", test_filters);
+    g_test_add_func("/page/captions", test_captions);
     return g_test_run();
 }

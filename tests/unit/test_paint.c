@@ -1070,6 +1070,49 @@ static void test_infos(void)
     g_assert_cmpfloat(c[2], ==, 0.0f);
 }
 
+/* ---- cutting ---- */
+
+/* Convex polygons, cut again and again: what union_cut and ring_cut_known leave is what ring_clip leaves, to the last bit, also where the line
+ * runs along a side or through a corner. */
+static void test_cut(void)
+{
+    uint64_t c = 7;
+    Rings a = {0}, b = {0}, spare = {0};
+    Circle *circle = circle_new();
+    Union u;
+    union_init(&u, circle);
+    for (int polygon = 0; polygon < 20000; polygon++) {
+        static const Vec2 pixel[4] = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+        rings_reset(u.ping);
+        rings_copy(u.ping, pixel, 4);
+        rings_reset(&a);
+        rings_copy(&a, pixel, 4);
+        for (int cut = 0; cut < 40 && a.n > 0; cut++) {
+            Vec2 normal = circle->dir[(uint32_t)(uniform(&c) * CIRCLE)];
+            double bound = vec_dot(vec2(uniform(&c), uniform(&c)), normal) + 0.4 * uniform(&c);
+            if (cut % 5 == 4) { /* through a corner, but for rounding */
+                bound = vec_dot(a.v[(uint32_t)(uniform(&c) * a.n_v)], normal);
+            } else if (cut % 5 == 3) { /* along a side, but for rounding */
+                Vec2 side = vec_sub(a.v[1], a.v[0]);
+                normal = vec2(side.y, -side.x);
+                bound = vec_dot(a.v[0], normal) + 1e-10 * (uniform(&c) - 0.5);
+            }
+            rings_reset(&b);
+            ring_clip(a.v, a.n_v, normal, bound, &b);
+            spare = a;
+            a = b;
+            b = spare;
+            g_assert_true(union_cut(&u, normal, bound) == (a.n > 0));
+            g_assert_cmpuint(u.ping->n_v, ==, a.n_v);
+            g_assert_true(memcmp(u.ping->v, a.v, a.n_v * sizeof *a.v) == 0);
+        }
+    }
+    rings_clear(&a);
+    rings_clear(&b);
+    union_clear(&u);
+    g_free(circle);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -1077,6 +1120,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/strokes", test_strokes);
     g_test_add_func("/paint/coverage/samples", test_coverage);
     g_test_add_func("/paint/coverage/clip", test_clip);
+    g_test_add_func("/paint/coverage/cut", test_cut);
     g_test_add_func("/paint/base", test_base);
     g_test_add_func("/paint/bulb", test_bulb);
     g_test_add_func("/paint/coverage/capsule", test_capsule_area);

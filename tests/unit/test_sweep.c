@@ -650,7 +650,7 @@ static void test_refused_tables(void)
     check_refused("seed = 1\ntable = b.csv", "@/b.csv: seed: already given in line 3 of the sweep file");
     check_refused("mode = zip\ntable = b.csv\nveins.kill_distance = 1;2;3",
                   "@/s.ini:5: [sweep] veins.kill_distance: has 3 values, and the table of line 4 has 2; in mode zip there must be as many (or one for all)");
-    check_refused("table = none.csv", "@/none.csv: can't read '@/none.csv': No such file or directory");
+    check_refused("table = none.csv", "@/s.ini:3: [sweep] table: @/none.csv: can't read '@/none.csv': No such file or directory");
     GError *error = NULL;
     g_assert_null(sweep_parse("seed = 1", 8, "x.ini", &error));
     g_assert_cmpstr(error->message, ==, "x.ini:1: [sweep] seed: [sweep] must come before the first key");
