@@ -16,9 +16,9 @@ layers() {
     printf '%s\n' "$2" >"$work/style.css"
     rsvg-convert --stylesheet "$work/style.css" --height "$height" "$work/leaf_drawing.svg" --background-color white -o "$work/$1.png"
 }
-layers 1 '#outline-layer, #marks, #veins { display: none }'
-layers 2 '#scan, #veins { display: none } #outline { stroke: #222222 !important; stroke-width: 3px !important }'
-layers 3 '#scan { display: none } #outline { stroke: #888888 !important; stroke-width: 2px !important }'
+layers 1 '#outline-layer, #holes, #marks, #veins { display: none }'
+layers 2 '#scan, #veins { display: none } #outline, #holes path { stroke: #222222 !important; stroke-width: 3px !important }'
+layers 3 '#scan { display: none } #outline, #holes path { stroke: #888888 !important; stroke-width: 2px !important }'
 (
     cd "$work"
     povray -D +A0.1 +Q9 "+W$((height * 11 / 10))" "+H$height" +Ibent.pov +O4.png >povray.log 2>&1 || { tail -n 20 povray.log >&2; exit 1; }

@@ -59,6 +59,21 @@ static void put_outline(GString *s, const DrawingSheet *d)
     g_string_append(s, d->curves ? "\"/>\n</g>\n" : " Z\"/>\n</g>\n");
 }
 
+static void put_holes(GString *s, const DrawingSheet *d)
+{
+    if (!d->holes || d->holes->n == 0)
+        return;
+    open_layer(s, "holes", " sodipodi:insensitive=\"true\"");
+    for (uint32_t k = 0; k < d->holes->n; k++) {
+        g_string_append_printf(s, "<path id=\"hole-%u\" style=\"fill:none;stroke:#e8590c;stroke-width:", k + 1);
+        sink_size(s, pen(d));
+        g_string_append(s, ";stroke-linejoin:round\" d=\"");
+        put_line(s, &d->to_scan, d->holes->p + d->holes->start[k], d->holes->start[k + 1] - d->holes->start[k]);
+        g_string_append(s, " Z\"/>\n");
+    }
+    g_string_append(s, "</g>\n");
+}
+
 static void put_mark(GString *s, const DrawingSheet *d, const char *id, Vec2 leaf)
 {
     Vec2 p = affine_apply(&d->to_scan, leaf);
@@ -143,6 +158,7 @@ gboolean export_drawing_svg(const DrawingSheet *d, const char *path, GError **er
     put_head(s, d);
     put_scan(s, d);
     put_outline(s, d);
+    put_holes(s, d);
     open_layer(s, "marks", "");
     put_mark(s, d, "base", vec2(0.0, 0.0));
     put_mark(s, d, "tip", vec2(0.0, 1.0));

@@ -187,6 +187,7 @@ static gboolean write_drawing(const Writer *w, const char *image, const char *fi
                           .image = image,
                           .outline = g->outline,
                           .curves = g->fang ? curves_down(g->fang->fit, g->scan->height) : NULL,
+                          .holes = g->holes,
                           .veins = g->drawing,
                           .order = vein_orders(g->drawing, w->leaf->net),
                           .to_scan = g->to_scan};

@@ -332,7 +332,11 @@ static void check_kept(const char *image, const char *scan, bool as_is)
     Ground *g = ground_new(q->values, true, &error);
     g_assert_no_error(error);
     g_assert_nonnull(g->drawing);
-    g_assert_cmpuint(g->drawing->n, ==, 0);
+    g_assert_cmpuint(g->drawing->n, ==, 0); /* holes are no veins */
+    uint32_t holes = leaf->ground->holes ? leaf->ground->holes->n : 0;
+    g_assert_cmpuint(g->holes ? g->holes->n : 0, ==, holes);
+    g_assert_cmpuint(holes, ==, strcmp(scan, "x_scan.jpg") == 0 ? 2 : holes); /* grape.jpg as it is */
+    g_assert_true(holds("x_drawing.svg", "id=\"hole-2\"") == (holes >= 2) && !holds("x_drawing.svg", "id=\"hole-3\""));
     for (int k = 0; k < 2; k++)
         g_assert_cmpfloat(vec_dist(affine_apply(&g->to_scan, vec2(0, k)), affine_apply(&leaf->ground->to_scan, vec2(0, k))), <, 0.01);
     ground_unref(g);
