@@ -39,12 +39,21 @@ static gboolean set_option(Run *run, const char *option, const char *key, const 
     return !value || cli_set(run->params, option, key, value, error);
 }
 
+/* Nothing grows, unless an L-system was asked for, which draws at once. */
+static gboolean choose_origin(Run *run, GError **error)
+{
+    char *origin = ven_params_get(run->params, "veins.origin");
+    gboolean lsystem = g_strcmp0(origin, "lsystem") == 0;
+    g_free(origin);
+    return lsystem || run_set(run, "veins.origin", "drawn", error);
+}
+
 static gboolean read_params(Capture *c, GError **error)
 {
     Run *run = &c->run;
     const CaptureArgs *a = c->args;
     return run_read_params(run, a->params, error) && ven_params_use_scan(run->params, run->path, error) &&
-           run_set(run, "veins.origin", "drawn", error) && set_option(run, "--method", "scan.method", a->method, error) &&
+           choose_origin(run, error) && set_option(run, "--method", "scan.method", a->method, error) &&
            set_option(run, "--back", "scan.back", a->back, error) && set_option(run, "--drawing", "veins.drawing", a->drawing, error) &&
            set_option(run, "--maps", "texture.maps", a->maps, error);
 }

@@ -205,8 +205,10 @@ static gboolean write_drawing(const Writer *w, const char *image, const char *fi
 static char *parameter_text(const VenLeaf *leaf, const char *scan, const char *back, const char *drawing)
 {
     Params *p = params_copy(leaf->params);
+    gboolean lsystem = params_choice(p, PARAM_VEINS_ORIGIN) == ORIGIN_LSYSTEM;
     gboolean ok = params_set(p, PARAM_SCAN_FILE, scan, "", NULL) && params_set(p, PARAM_OUTLINE_FILE, drawing, "", NULL) &&
-                  params_set(p, PARAM_VEINS_DRAWING, drawing, "", NULL) && params_set(p, PARAM_VEINS_ORIGIN, "grown", "", NULL) &&
+                  params_set(p, PARAM_VEINS_DRAWING, drawing, "", NULL) &&
+                  (lsystem || params_set(p, PARAM_VEINS_ORIGIN, "grown", "", NULL)) &&
                   (!back || params_set(p, PARAM_SCAN_BACK, back, "", NULL));
     g_assert(ok); /* names of files, and a word of the table */
     GString *s = g_string_new("# Grow and shape this leaf: venation grow FILE, venation shape FILE. Correct outline and veins in the drawing,\n"

@@ -9,6 +9,9 @@
 #include "sim/simulation.h"
 #include "venation.h"
 
+/* Choices of veins.origin. */
+enum { ORIGIN_GROWN, ORIGIN_DRAWN, ORIGIN_LSYSTEM };
+
 struct VenParams {
     Params *values;
 };

@@ -227,8 +227,6 @@ static Network *lsystem_veins(const Params *p, const Ground *g, double length, u
 
 /* ---- the way to a leaf ---- */
 
-enum { ORIGIN_GROWN, ORIGIN_DRAWN, ORIGIN_LSYSTEM };
-
 static VenLeaf *grow_in(const Params *p, Ground *ground, SimulationDef *def, const VenOptions *options, GError **error)
 {
     double length = simulation_final_length(def, error);

@@ -716,6 +716,13 @@ def test_capture_ways():
         done = run("capture", "leaf.png", *CAPTURE, "--maps", "base_color", "-o", "x", *more)
         if done.status:
             raise AssertionError((more, done.err))
+    # an L-system's veins, in the picture as in what one goes on with
+    done = run("capture", "leaf.png", *CAPTURE, "--maps", "none", "-o", "written", "--method", "fang", "--set", "veins.origin=lsystem", "--json")
+    same((done.status, json.loads(done.out)["run"]["end"]), (0, "written by an L-system"))
+    holds(open("written/leaf.ini", encoding="utf-8").read(), "origin = lsystem")
+    again = run("grow", "written/leaf.ini", "--maps", "none", "-o", "again", "--json")
+    veins = [json.loads(run_.out)["network"]["veins"] for run_ in (done, again)]
+    same(abs(veins[0] - veins[1]) <= 5, True)  # the outline in hundredths of pixels cuts others
     done = run("capture", "two.png", *CAPTURE, "--maps", "none", "--each")
     same((done.status, "2 leaves captured" in done.err), (0, True))
     same([f"two_{i}.ini" in files("out/two") for i in (1, 2, 3)], [True, True, False])

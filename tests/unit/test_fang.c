@@ -483,8 +483,12 @@ static void test_scans(void)
                 return;
             FangDef def = fang_def_default();
             def.edges.op = (EdgesOperator)op;
+            def.fit.rule = BEZIERFIT_CONTOUR; /* as a capture does by default */
+            def.fit.tolerance = 1.5;
             FangProfile *p = capture_ok(s, &def);
             check_scan(p, SCANS[k].file, op, SCANS[k].filled, SCANS[k].base, SCANS[k].tip, 0.02, 40.0);
+            g_assert_cmpfloat(p->fit->mean, <, 0.5);
+            g_assert_cmpfloat(p->fit->largest, <, 3.0);
             fang_profile_free(p);
             scan_free(s);
         }
