@@ -41,7 +41,7 @@ static inline __attribute__((always_inline)) bool bucket_open(const QuadBucket *
     return FOUR_ANY(any);
 }
 
-FOUR_WIDE bool lune_search(const Field *f, Vec2 s, const Neighbour *x, const Neighbour *clear, Neighbour *found)
+WIDE bool lune_search(const Field *f, Vec2 s, const Neighbour *x, const Neighbour *clear, Neighbour *found)
 {
     QuadSquare stack[QUAD_STACK];
     unsigned depth = 0;

@@ -139,7 +139,7 @@ POINTS_INLINE uint32_t leave_out_far(const Points *p, Box2 box, Points *out)
     return m;
 }
 
-FOUR_WIDE uint32_t points_nearest_to(const Points *p, Box2 box, double bound2, Points *out)
+WIDE uint32_t points_nearest_to(const Points *p, Box2 box, double bound2, Points *out)
 {
     enum { SOME = 4 };
     uint32_t n = p->n, m = 0;
@@ -164,7 +164,7 @@ FOUR_WIDE uint32_t points_nearest_to(const Points *p, Box2 box, double bound2, P
 
 /* ---- rivals ---- */
 
-FOUR_WIDE void guard_make(Guard *g, Box2 box, const Points *near, bool nearest_alone)
+WIDE void guard_make(Guard *g, Box2 box, const Points *near, bool nearest_alone)
 {
     const Four cx = {box.x0, box.x1, box.x0, box.x1}, cy = {box.y0, box.y0, box.y1, box.y1};
     Four best2 = FOUR(HUGE_VAL);
@@ -207,7 +207,7 @@ POINTS_INLINE void guard_excludes(const Guard *g, const Four *px, const Four *py
     *out = (g->all ? ~some_apart : FOUR_MASK(0)) | (g->nearest_alone ? FOUR_MASK(0) : by_one);
 }
 
-FOUR_WIDE uint32_t guard_pass(const Guard *g, const Points *p, Points *out, uint32_t cap)
+WIDE uint32_t guard_pass(const Guard *g, const Points *p, Points *out, uint32_t cap)
 {
     uint32_t m = 0;
     for (uint32_t i = 0; i < p->n; i += 4) {

@@ -157,7 +157,7 @@ static inline __attribute__((always_inline)) void four_shut(const Neighbour *x, 
 }
 
 /* Pushes the quadrants that the nodes found so far do not shut. */
-static FOUR_WIDE void open_quadrants(Heap *heap, const Field *f, const View *v, QuadSquare q)
+static WIDE void open_quadrants(Heap *heap, const Field *f, const View *v, QuadSquare q)
 {
     FourSquares c = {0};
     FourMask shut = FOUR_MASK(0);

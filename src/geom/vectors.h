@@ -6,20 +6,14 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "geom/wide.h"
+
 typedef double Four __attribute__((vector_size(32)));
 typedef int64_t FourMask __attribute__((vector_size(32))); /* of a comparison: all ones or 0 */
 typedef uint32_t FourNodes __attribute__((vector_size(16)));
 typedef uint32_t EightNodes __attribute__((vector_size(32)));
 typedef double Two __attribute__((vector_size(16)));
 typedef int64_t TwoMask __attribute__((vector_size(16)));
-
-/* A function with loops over them: compiled twice where the loader can choose. Not with fused multiply-add, whose bits are others. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define FOUR_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define FOUR_WIDE
-#endif
 
 #define FOUR(v) ((Four){(v), (v), (v), (v)})
 #define FOUR_PICK(mask, a, b) ((Four)(((FourMask)(a) & (mask)) | ((FourMask)(b) & ~(mask))))

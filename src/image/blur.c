@@ -3,7 +3,7 @@
 #include <glib.h>
 #include <string.h>
 
-#include "image/wide.h"
+#include "geom/wide.h"
 
 enum { COLUMNS = 16 }; /* blurred together, as they share cache lines */
 

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "image/wide.h"
+#include "geom/wide.h"
 
 enum { LEAF = 8 };  /* side of squares that are no longer quartered */
 

@@ -1,6 +1,6 @@
 /* The part of a stroke in a pixel. */
 #include "image/convex.h"
-#include "image/wide.h"
+#include "geom/wide.h"
 
 /* Bisection of the quadrants: square roots only. */
 Circle *circle_new(void)

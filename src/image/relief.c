@@ -4,7 +4,7 @@
 
 #include "image/painter.h"
 #include "image/pixels.h"
-#include "image/wide.h"
+#include "geom/wide.h"
 
 /* The profile over u, distance from the axis in radii: an arch over the vein and a fillet that runs out to the blade
  * FILLET radii beyond its edge, joined smoothly at a height of `foot`. */

@@ -3,7 +3,7 @@
 
 #include "image/blur.h"
 #include "image/painter.h"
-#include "image/wide.h"
+#include "geom/wide.h"
 
 /* Depth of the blade between veins below its veins, segments: it arches towards the sunny side. */
 static double arch_depth(const Painter *p)

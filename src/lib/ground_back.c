@@ -61,7 +61,8 @@ static double apart(const Vec2 *front, const Vec2 *back, const Affine *m, const 
     Affine inverse = {.a = m->d / det, .b = -m->b / det, .c = -m->c / det, .d = m->a / det};
     inverse.e = -(inverse.a * m->e + inverse.c * m->f);
     inverse.f = -(inverse.b * m->e + inverse.d * m->f);
-    return MAX(mean_distance(front, m, seen) / size, mean_distance(back, &inverse, outline));
+    double there = mean_distance(front, m, seen) / size, and_back = mean_distance(back, &inverse, outline);
+    return MAX(there, and_back);
 }
 
 static double align(const Polygon *outline, const Polygon *seen, Affine *m)

@@ -324,7 +324,8 @@ GreyImage *edges_map(const GreyImage *in, const EdgesDef *def, double used[2], G
     double high = def->high, low = def->low;
     if (def->automatic) {
         double scale = def->op == EDGES_LAPLACIAN ? 1.0 / (def->sigma * def->sigma) : 1.0; /* of a second derivative's kernel */
-        high = MAX(edges_otsu(response), noise_floor * grey_range(in) * scale);
+        double split = edges_otsu(response), least = noise_floor * grey_range(in) * scale;
+        high = MAX(split, least);
         low = def->op == EDGES_CANNY ? canny_low * high : high;
     }
     GreyImage *map = hysteresis(response, high, low);

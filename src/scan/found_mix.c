@@ -48,7 +48,8 @@ static GreyImage *mixed(const FoundLeaf *l, const double mix[3])
 /* Mean of the greatest contrasts over the noise: what `f` shows of veins of its polarity. */
 static double clearness(const FoundLeaf *l, const GreyImage *best, const GreyImage *other)
 {
-    double from = found_quantile(l, best, 1.0 - vein_share), noise = MAX(found_quantile(l, other, noise_quantile), least_noise), sum = 0.0, count = 0.0;
+    double from = found_quantile(l, best, 1.0 - vein_share), noise = found_quantile(l, other, noise_quantile), sum = 0.0, count = 0.0;
+    noise = MAX(noise, least_noise);
     for (gsize i = 0; i < (gsize)l->width * l->height; i++)
         if (l->deep[i] && (double)best->px[i] > from) {
             sum += (double)best->px[i];

@@ -46,7 +46,8 @@ static void head(const Sides *s, Vec2 end, Vec2 q, Vec2 along, double width, dou
 
 static void count(const FoundLeaf *l, const FoundLines *f, double width, Sides *s)
 {
-    double noise = MAX(found_quantile(l, f->other, noise_quantile), least_noise);
+    double noise = found_quantile(l, f->other, noise_quantile);
+    noise = MAX(noise, least_noise);
     Vec2 unit[FOUND_DIRECTIONS];
     for (uint32_t d = 0; d < FOUND_DIRECTIONS; d++) {
         double sine, cosine;

@@ -58,7 +58,7 @@ bool crowd_turns(const Simulation *s, const Crowd *c, const Sight *sight)
 }
 
 /* Draws slots first … last-1 to p; returns the largest squared distance. */
-static FOUR_WIDE double draw_run(const Vec2 *place, uint32_t n, Vec2 p, double *x, double *y)
+static WIDE double draw_run(const Vec2 *place, uint32_t n, Vec2 p, double *x, double *y)
 {
     Four px = FOUR(p.x), py = FOUR(p.y), most2 = FOUR(-1.0);
     for (uint32_t k = 0; k < n; k += 4) {

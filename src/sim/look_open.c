@@ -68,7 +68,7 @@ BLOCK_INLINE double show_run(Simulation *s, uint32_t first, uint32_t last, const
     return four_most(&most2);
 }
 
-FOUR_WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, const Draw *draw, bool *together)
+WIDE double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, const Draw *draw, bool *together)
 {
     const Show show = {sight, MAX(kill2(s), past2(s)), draw, together};
     uint32_t few = sight->nearest.n;

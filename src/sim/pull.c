@@ -92,7 +92,7 @@ static void sums_add(Simulation *s, Sums *sums, uint32_t v, uint32_t k, double x
     sums->count[2 * i + 1]++;
 }
 
-FOUR_WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw)
+WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw)
 {
     if (!draw->x)
         return;
@@ -177,7 +177,7 @@ static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, u
 }
 
 /* Slots first … last-1, each with what it pulls; x and y are those of the band. */
-static FOUR_WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, bool remove, const double *x, const double *y)
+static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, bool remove, const double *x, const double *y)
 {
     const uint8_t *mark = s->mark;
     const uint32_t *near = s->near;

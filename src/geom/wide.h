@@ -1,6 +1,6 @@
 /* Loops that vector instructions take in. */
-#ifndef IMAGE_WIDE_H
-#define IMAGE_WIDE_H
+#ifndef GEOM_WIDE_H
+#define GEOM_WIDE_H
 
 #include <stdint.h> /* says which C library it is */
 
