@@ -1,7 +1,6 @@
 /* Where the primaries of a palmate leaf meet. Right at the base they are too close to be told apart, and paths leave the midvein with a bend; so
  * each one's beginning is drawn anew, from the point that all of them head for. */
 #include <math.h>
-#include <string.h>
 
 #include "scan/found_parts.h"
 
@@ -97,22 +96,13 @@ static void redraw(FoundVein *v, uint32_t keep, Vec2 node, const Vec2 *start)
 {
     double run = vec_dist(node, v->p[keep]), stub = start ? vec_dist(*start, node) : 0.0;
     uint32_t n_run = MAX(1, (uint32_t)(run / spacing + 0.5)), n_stub = stub > 0.0 ? MAX(1, (uint32_t)(stub / spacing + 0.5)) : 0;
-    uint32_t n = n_stub + n_run + v->n - keep, m = 0;
-    Vec2 *p = g_new(Vec2, n), end = slope(v, keep, run);
-    double *w = g_new(double, n);
+    Vec2 *lead = g_new(Vec2, n_stub + n_run), end = slope(v, keep, run);
     for (uint32_t k = 0; k < n_stub; k++)
-        p[m++] = vec_lerp(*start, node, (double)k / n_stub);
+        lead[k] = vec_lerp(*start, node, (double)k / n_stub);
     for (uint32_t k = 0; k < n_run; k++)
-        p[m++] = bent(node, v->p[keep], end, (double)k / n_run);
-    for (uint32_t k = 0; k < m; k++)
-        w[k] = v->width[keep];
-    memcpy(p + m, v->p + keep, (v->n - keep) * sizeof *p);
-    memcpy(w + m, v->width + keep, (v->n - keep) * sizeof *w);
-    g_free(v->p);
-    g_free(v->width);
-    v->p = p;
-    v->width = w;
-    v->n = n;
+        lead[n_stub + k] = bent(node, v->p[keep], end, (double)k / n_run);
+    found_lead(v, keep, lead, n_stub + n_run);
+    g_free(lead);
 }
 
 void found_hub(const FoundLeaf *l, FoundVein *vein, uint32_t n, Vec2 base)

@@ -1,6 +1,5 @@
 /* Where a vein leaves another its pixels and widths are the other's: there it is drawn anew, straight on from where it is by itself back to the other's line. */
 #include <math.h>
-#include <string.h>
 
 #include "scan/found_parts.h"
 
@@ -49,20 +48,12 @@ static bool meets(const FoundVein *v, Vec2 a, Vec2 b, Vec2 *at)
 /* Its points from `keep` on, with a straight run from `start` to them. */
 static void begin_at(FoundVein *v, Vec2 start, uint32_t keep)
 {
-    uint32_t run = MAX(1, (uint32_t)(vec_dist(start, v->p[keep]) / spacing + 0.5)), n = run + v->n - keep;
-    Vec2 *p = g_new(Vec2, n);
-    double *w = g_new(double, n);
-    for (uint32_t k = 0; k < run; k++) {
-        p[k] = vec_lerp(start, v->p[keep], (double)k / run);
-        w[k] = v->width[keep];
-    }
-    memcpy(p + run, v->p + keep, (v->n - keep) * sizeof *p);
-    memcpy(w + run, v->width + keep, (v->n - keep) * sizeof *w);
-    g_free(v->p);
-    g_free(v->width);
-    v->p = p;
-    v->width = w;
-    v->n = n;
+    uint32_t run = MAX(1, (uint32_t)(vec_dist(start, v->p[keep]) / spacing + 0.5));
+    Vec2 *lead = g_new(Vec2, run);
+    for (uint32_t k = 0; k < run; k++)
+        lead[k] = vec_lerp(start, v->p[keep], (double)k / run);
+    found_lead(v, keep, lead, run);
+    g_free(lead);
 }
 
 static void join(FoundVein *v, const FoundVein *parent)

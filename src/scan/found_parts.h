@@ -80,6 +80,9 @@ uint32_t *found_paths_best(FoundPaths *p, double least, uint32_t *n, uint32_t *i
 /* Smooth points at even steps along the ridge, widths measured. */
 void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v);
 
+/* Another beginning: the n points of `lead`, as wide as the vein is at its point `keep`, instead of those before that. */
+void found_lead(FoundVein *v, uint32_t keep, const Vec2 *lead, uint32_t n);
+
 /* Appends the primaries of a parallel-veined leaf, from base to tip, their pixels only; false, and nothing appended, when the leaf is none. Threshold: strength
  * that makes a ridge. */
 bool found_parallel(const FoundLeaf *l, const FoundRidges *r, Vec2 base, Vec2 tip, double threshold, GArray *vein);

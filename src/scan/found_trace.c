@@ -207,3 +207,21 @@ void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v)
     g_free(shift);
     g_free(chain);
 }
+
+void found_lead(FoundVein *v, uint32_t keep, const Vec2 *lead, uint32_t n)
+{
+    uint32_t kept = v->n - keep;
+    Vec2 *p = g_new(Vec2, n + kept);
+    double *w = g_new(double, n + kept);
+    for (uint32_t k = 0; k < n; k++) {
+        p[k] = lead[k];
+        w[k] = v->width[keep];
+    }
+    memcpy(p + n, v->p + keep, kept * sizeof *p);
+    memcpy(w + n, v->width + keep, kept * sizeof *w);
+    g_free(v->p);
+    g_free(v->width);
+    v->p = p;
+    v->width = w;
+    v->n = n + kept;
+}
