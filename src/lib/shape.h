@@ -45,6 +45,9 @@ struct VenShape {
     Rig *rig;            /* joints where the pose has them; NULL: none is asked for */
 };
 
+/* What mesh.membrane may be, in the table's order. */
+enum { MEMBRANE_CHOICE_LAPLACE, MEMBRANE_CHOICE_NATURAL, MEMBRANE_CHOICE_BILAPLACE };
+
 /* Poses the leaf; `pose` is taken over. */
 Bent shape_bend(const VenShape *s, Pose *pose);
 void bent_clear(Bent *b);
@@ -52,6 +55,22 @@ void bent_clear(Bent *b);
 /* A coarser level (1, 2, …) in that pose. Veins that would take the whole above a quarter of the triangles of the level before are left out,
  * the thinnest first. Its `pose` knows places alone. */
 Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent);
+
+/* Makes the coarser levels that mesh.levels asks for. */
+void shape_add_levels(VenShape *s);
+void shape_level_clear(Level *l);
+
+/* What vein solids are like, with the petiole of the scan where there is one; `coarser` as below. */
+SolidDef shape_solids(const VenLeaf *leaf, double coarser);
+
+/* A blade with triangles and uv, not yet placed. */
+Surface *shape_flat_blade(const VenShape *s, const Mesh *mesh);
+
+/* The tubes of `b` as a surface with uv. */
+void shape_dress_veins(const VenShape *s, Bent *b, const SolidDef *def);
+
+/* The mesh that conforms to a skeleton. */
+Mesh *shape_mesh(const Skeleton *sk, const MeshDef *def, GError **error);
 
 /* A midrib in the middle of a leaf that has no vein, as thin as its thinnest would be; straight where the blade lets it. */
 Network *shape_lay_midrib(const VenLeaf *leaf);
