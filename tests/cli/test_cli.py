@@ -805,6 +805,41 @@ def test_endless_file():
     check_refused(run("grow", "small.ini", "--set", "sources.placement=list", "--set", "sources.file=/dev/zero"), 3, "/dev/zero")
 
 
+def test_grow_conflicts():
+    """Values that are allowed one by one, but not together."""
+    write("small.ini", SMALL)
+    def refused(said, *sets):
+        check_refused(run("grow", "small.ini", *(word for s in sets for word in ("--set", s))), 3, said)
+    uneven = "growth.kind=nonuniform", "growth.steps=40"
+    refused("rate_y: at height y", *uneven, "growth.rate_y=0,2;1,2")
+    refused("more than 10000 times as narrow", *uneven, "growth.rate_x=0,-0.9;1,0")
+    refused("would make a leaf of 1.47e+06 segments", *uneven, "growth.rate_y=0,0.2;1,0.2", "growth.initial_length=1000")
+    refused("darts a step on a blade of", "sources.density=100", "growth.final_length=9000")
+    refused("darts in the 4980000 steps", "sources.density=3", "growth.final_length=5000", "growth.step=0.001")
+    refused("throws a dart where there is room for one", "sources.density=1e-7", "growth.final_length=3000", "veins.kill_distance=1",
+            "sources.birth_distance_veins=1")
+    refused("needs growth.kind = marginal or none", "sources.placement=margin")
+    refused("needs scan.file too", "veins.origin=drawn", "veins.drawing=lines.txt")
+    refused("[lsystem]: ", "veins.origin=lsystem", "lsystem.productions=F=F[")
+
+
+def test_shape_of_bare_network():
+    """A network without a margin lies in the outline of the parameters."""
+    node = '<node id="{}"><data key="x">0</data><data key="y">{}</data></node>'
+    write("bare.graphml", '<graphml><key id="x" for="node" attr.name="x" attr.type="double"/><key id="y" for="node" attr.name="y" attr.type="double"/>'
+          '<graph edgedefault="directed">' + node.format("a", 0) + node.format("b", 9) + '<edge source="a" target="b"/></graph></graphml>')
+    blade = "outline.path=M0,0 C20,10 10,40 0,50 C-10,40 -20,10 0,0 Z"
+    check_refused(run("shape", "bare.graphml"), 3, "no attribute 'margin'")
+    check_refused(run("shape", "bare.graphml", "--set", "outline.file=no.svg"), 3, "no.svg")
+    check_refused(run("shape", "bare.graphml", "--set", blade, "--set", "growth.final_length=5"), 3, "the node at 0,9 lies 4 segments outside the margin")
+    result = run("shape", "bare.graphml", "--set", blade, "--set", "growth.final_length=20", "--size", "16", "--formats", "obj")
+    same(result.status, 0, result.err)
+    places = [[float(x) for x in line.split()[1:]] for line in open("out/bare/bare.obj", encoding="utf-8") if line.startswith("v ")]
+    width = max(p[0] for p in places) - min(p[0] for p in places)
+    if abs(width - 0.046) > 0.0005: # of a leaf 0.1 m long; the curves are 0.46 times as wide
+        raise AssertionError(f"{width} m wide")
+
+
 def test_shape_refuses():
     write("small.ini", SMALL)
     check_refused(run("shape"), 2, "a file is missing")
@@ -817,6 +852,7 @@ def test_shape_refuses():
     check_refused(run("shape", "small.ini", "--set", "pose.keyframes=0 blnd=0"), 3, "blend")
     check_refused(run("shape", "small.ini", "--set", "mesh.fictitious_veins=0,0"), 3, "two points")
     check_refused(run("shape", "small.ini", "--set", "mesh.min_angle=60"), 3, "33")
+    check_refused(run("shape", "small.ini", "--size", "16384"), 3, "at most 12 are allowed, enough for")
     write("empty.graphml", "")
     check_refused(run("shape", "empty.graphml"), 3, "empty.graphml")
     write("bare.graphml", '<graphml><key id="x" for="node" attr.name="x" attr.type="double"/><key id="y" for="node" attr.name="y" '

@@ -916,6 +916,10 @@ def test_refusals():
             "many.ini:3: [sweep] veins.kill_distance: has 1000 values, and 1000000000 variants are too many; there may be up to 999999999",
         "mode = sample\ncount = 1000000000\nseed = each": "many.ini:4: [sweep] count = 1000000000: must be a whole number from 1 to 999999999",
         "table = none.csv": "many.ini:3: [sweep] table: none.csv: can't read",
+        "veins.kill_distance = from 1 to 4 in 2.5": "must be a whole one, 2 or more",
+        "veins.kill_distance = from 1 to 2 by 1e-20": "too many values to tell apart",
+        "mode = sample\ncount = 4\nveins.kill_distance = uniform(1, 1.0000000000000002)": "too narrow to tell values apart",
+        "mode = sample\ncount = 4\nveins.kill_distance = normal(3, 1e-30)": "too narrow to tell values apart",
     }
     for lines, part in cases.items():
         sweep_file(f"[sweep]\nparams = leaf.ini\n{lines}\n")
@@ -923,7 +927,7 @@ def test_refusals():
     check_refused(run("sweep", "nothing.ini"), 3, "nothing.ini")
     sweep_file()
     check_refused(run("sweep", "many.ini", "--set", "veins.kill_distance=3"), 3, "many.ini gives veins.kill_distance its values")
-    for args in (["--shard", "0/3"], ["--shard", "4/3"], ["--shard", "3"], ["--shard", "1/2", "--collect"], ["--cell", "9999"], ["--picture", "leaf"], []):
+    for args in (["--shard", "0/3"], ["--shard", "4/3"], ["--shard", "3"], ["--shard", "1/2", "--collect"], ["--cell", "9999"], ["--cell", "5"], ["--dataset", "--validation", "2"], ["--picture", "leaf"], []):
         result = run("sweep", *(["many.ini"] if args else []), *args)
         same(result.status, 2, f"{args}: {result.err!r}")
 
