@@ -1,10 +1,12 @@
 #include "scan/corners.h"
 
+#define LARGEST 100.0 /* of a sigma */
+
 G_DEFINE_QUARK(venation-corners-error-quark, corners_error)
 
 CornersDef corners_def_default(void)
 {
-    return (CornersDef){.smoothing = 1.0, .window = 2.0, .k = 0.04, .threshold = 0.02, .spacing = 8.0};
+    return (CornersDef){.smoothing = 1.0, .window = 2.0, .k = 0.04, .threshold = 0.02, .spacing = 8.0, .size = 1200.0};
 }
 
 /* --- checks --- */
@@ -29,9 +31,9 @@ static bool check_range(const char *name, double value, double least, double mos
 
 static bool check_def(const CornersDef *def, GError **error)
 {
-    return check_range("smoothing", def->smoothing, 0.0, 100.0, error) && check_range("window", def->window, 0.5, 100.0, error) &&
+    return check_range("smoothing", def->smoothing, 0.0, LARGEST, error) && check_range("window", def->window, 0.5, LARGEST, error) &&
            check_range("k", def->k, 0.0, 0.25, error) && check_range("threshold", def->threshold, 0.0, 1.0, error) &&
-           check_range("spacing", def->spacing, 0.0, 1e9, error);
+           check_range("spacing", def->spacing, 0.0, 1e9, error) && check_range("size", def->size, 0.0, 1e9, error);
 }
 
 static bool check_contour(const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, GError **error)
@@ -224,10 +226,25 @@ static bool has_room(const Contour *c, const GArray *kept, uint32_t at, double s
     return true;
 }
 
-GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *def, GError **error)
+/* Lengths for a contour of that extent. */
+static CornersDef scaled(const CornersDef *def, const Vec2 *v, uint32_t n)
 {
-    if (!check_contour(v, n, base, tip, error))
+    Box2 box = box_empty();
+    for (uint32_t i = 0; i < n; i++)
+        box = box_add(box, v[i]);
+    double extent = vec_dist(vec2(box.x0, box.y0), vec2(box.x1, box.y1)), by = def->size > 0.0 ? MAX(extent / def->size, 1.0) : 1.0;
+    CornersDef out = *def;
+    out.smoothing = MIN(by * def->smoothing, LARGEST);
+    out.window = MIN(by * def->window, LARGEST);
+    out.spacing = by * def->spacing;
+    return out;
+}
+
+GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *given, GError **error)
+{
+    if (!check_contour(v, n, base, tip, error) || !check_def(given, error))
         return NULL;
+    CornersDef used = scaled(given, v, n), *def = &used;
     GreyImage *response = corners_response(in, def, error);
     if (!response)
         return NULL;

@@ -13,9 +13,11 @@ typedef struct {
                        * those that turn by less than 2 √k radians */
     double threshold; /* least response of a corner, as part of the greatest on the contour, 0 … 1 */
     double spacing;   /* least way along the contour from one characteristic point to the next, pixels */
+    double size;      /* extent (diagonal of its box) of a contour, pixels, beyond which smoothing, window and spacing grow in proportion: the teeth of a
+                       * leaf scanned twice as finely are as blunt for twice as many pixels. 0: they stay */
 } CornersDef;
 
-/* 1, 2, 0.04, 0.02, 8: bends of a radius above 10 pixels or of less than 23° are smooth. */
+/* 1, 2, 0.04, 0.02, 8, 1200: bends of a radius above 10 pixels, or 1/120 of a larger contour's extent, or of less than 23° are smooth. */
 CornersDef corners_def_default(void);
 
 typedef enum {

@@ -378,6 +378,69 @@ static void test_side_by_side(void)
     }
 }
 
+/* ---- shaping ---- */
+
+/* Of the triangles; signed, seen from above, when `flat`. */
+static double shape_area(const VenShape *s, gboolean flat)
+{
+    double sum = 0.0;
+    for (uint32_t t = 0; t < ven_shape_triangles(s); t++) {
+        uint32_t v[3];
+        double p[3][3], a[3], b[3];
+        ven_shape_triangle(s, t, v);
+        for (int k = 0; k < 3; k++)
+            ven_shape_vertex(s, v[k], p[k], NULL);
+        for (int k = 0; k < 3; k++) {
+            a[k] = p[1][k] - p[0][k];
+            b[k] = p[2][k] - p[0][k];
+        }
+        double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+        sum += 0.5 * (flat ? z : sqrt(x * x + y * y + z * z));
+    }
+    return sum;
+}
+
+/* A flat blade of a known outline, then bent: each triangle faces the sunny side, together they are the lamina. */
+static void test_shape(void)
+{
+    GError *error = NULL;
+    VenParams *p = small();
+    set(p, "outline.path", "M0,0 L3,5 0,10 -3,5 Z");
+    set(p, "pose.preset", "flat");
+    set(p, "export.leaf_length", "0.2");
+    VenLeaf *leaf = grow(p, 1, 1);
+    VenShape *s = ven_shape(leaf, &error);
+    g_assert_no_error(error);
+    double metres = 0.2 / 10.0, area = 30.0 * metres * metres;
+    g_assert_cmpfloat(fabs(shape_area(s, TRUE) - area), <, 1e-6 * area);
+    g_assert_cmpuint(ven_shape_levels(s), ==, 1);
+    g_assert_false(ven_shape_rig(s, NULL, NULL, NULL));
+    double normal[3], place[3], top = 0.0;
+    for (uint32_t i = 0; i < ven_shape_vertices(s); i++) {
+        ven_shape_vertex(s, i, place, normal);
+        g_assert_cmpfloat(fabs(normal[2] - 1.0), <, 1e-9);
+        g_assert_cmpfloat(fabs(place[2]), <, 1e-9);
+        top = MAX(top, place[1]);
+    }
+    g_assert_cmpfloat(fabs(top - 0.2), <, 1e-9);
+
+    set(p, "pose.preset", "folded");
+    g_assert_true(ven_shape_pose(s, p, 1, &error));
+    g_assert_no_error(error);
+    double bent = shape_area(s, FALSE), seen = shape_area(s, TRUE);
+    g_assert_cmpfloat(fabs(bent - area), <, 0.1 * area); /* a blade bends far more easily than it stretches */
+    g_assert_cmpfloat(seen, <, 0.9 * area);
+
+    set(p, "pose.rules", "no_such_vein lift 10");
+    g_assert_false(ven_shape_pose(s, p, 1, &error));
+    g_assert_nonnull(strstr(error->message, "no_such_vein"));
+    g_clear_error(&error);
+    g_assert_cmpfloat(shape_area(s, TRUE), ==, seen);
+    ven_shape_free(s);
+    ven_leaf_free(leaf);
+    ven_params_free(p);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -391,5 +454,6 @@ int main(int argc, char **argv)
     g_test_add_func("/api/cancel", test_cancel);
     g_test_add_func("/api/write", test_write);
     g_test_add_func("/api/side-by-side", test_side_by_side);
+    g_test_add_func("/api/shape", test_shape);
     return g_test_run();
 }

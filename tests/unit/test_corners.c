@@ -311,6 +311,49 @@ static void test_grey_scale(void)
     grey_image_free(b);
 }
 
+/* Contours larger than `size` are looked at more coarsely, in proportion; smaller ones are not. So rounded tips count however finely they are scanned. */
+static void test_size(void)
+{
+    enum { N = 128, TIPS = 6 };
+    Vec2 v[N];
+    uint32_t at[N], count[3];
+    for (uint32_t i = 0; i < N; i++) { /* tips as blunt as discs of some 6 pixels' radius */
+        double a = 2.0 * G_PI * i / N, r = 40.0 + 14.0 * cos(TIPS * a);
+        v[i] = vec2(64.2 + r * cos(a), 63.7 + r * sin(a));
+    }
+    for (uint32_t zoom = 1; zoom <= 3; zoom++) {
+        Vec2 big[N];
+        for (uint32_t i = 0; i < N; i++)
+            big[i] = vec_scale(v[i], zoom);
+        GreyImage *g = draw(big, N, zoom * 128);
+        GArray *points = sample(big, N, 0.5, at);
+        Box2 box = box_empty();
+        for (guint i = 0; i < points->len; i++)
+            box = box_add(box, g_array_index(points, Vec2, i));
+        CornersDef def = corners_def_default();
+        def.size = vec_dist(vec2(box.x0, box.y0), vec2(box.x1, box.y1)) / zoom;
+        GArray *found = find(g, points, at[0], at[N / 2], &def);
+        count[zoom - 1] = found->len;
+        def.smoothing *= zoom;
+        def.window *= zoom;
+        def.spacing *= zoom;
+        for (double size = 0.0; size < 1e5; size += 9e4) { /* none, and one larger than the contour */
+            def.size = size;
+            GArray *same = find(g, points, at[0], at[N / 2], &def);
+            g_assert_cmpuint(same->len, ==, found->len);
+            for (guint k = 0; k < found->len; k++)
+                g_assert_cmpuint(g_array_index(same, Corner, k).at, ==, g_array_index(found, Corner, k).at);
+            g_array_unref(same);
+        }
+        g_array_unref(found);
+        g_array_unref(points);
+        grey_image_free(g);
+    }
+    g_assert_cmpuint(count[0], >=, TIPS);
+    g_assert_cmpuint(count[1], ==, count[0]);
+    g_assert_cmpuint(count[2], ==, count[0]);
+}
+
 /* --- refusals --- */
 
 static void refuse(const GreyImage *g, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, CornersDef def, GQuark domain, int code,
@@ -355,6 +398,9 @@ static void test_refused(void)
     def = good;
     def.spacing = -3.0;
     refuse(g, v, 4, 0, 1, def, CORNERS_ERROR, CORNERS_ERROR_SETTINGS, "spacing");
+    def = good;
+    def.size = (double)NAN;
+    refuse(g, v, 4, 0, 1, def, CORNERS_ERROR, CORNERS_ERROR_SETTINGS, "size");
     v[3].y = (double)NAN;
     refuse(g, v, 4, 0, 1, good, CORNERS_ERROR, CORNERS_ERROR_CONTOUR, "point 3");
     grey_image_free(g);
@@ -371,6 +417,7 @@ int main(int argc, char **argv)
     g_test_add_func("/corners/circle", test_circle);
     g_test_add_func("/corners/spacing", test_spacing);
     g_test_add_func("/corners/grey-scale", test_grey_scale);
+    g_test_add_func("/corners/size", test_size);
     g_test_add_func("/corners/refused", test_refused);
     return g_test_run();
 }

@@ -1,10 +1,8 @@
-/* From images to outlines: masks against brute force, drawn leaves whose answers are known, and real scans: params/scans/grape.jpg always, and others
- * where there are any: in the folder that VENATION_SCANS names, else shared/scans beside the checkout. */
+/* From images to outlines: masks against brute force, and drawn leaves whose answers are known. Real scans are in test_references.c. */
 #include <glib.h>
 #include <math.h>
 #include <string.h>
 
-#include "geom/march.h"
 #include "geom/random.h"
 #include "geom/ring.h"
 #include "scan/axis.h"
@@ -792,177 +790,6 @@ static void test_anything(void)
     g_assert_cmpuint(captured, >, 120);
 }
 
-/* Real scans */
-
-typedef struct {
-    const char *file;
-    Channel channel;
-    double kept, filled, binary, levels; /* areas and perimeters by another program */
-    Vec2 base, tip;                      /* read off the picture */
-} Reference;
-
-static const Reference SCANS[] = {
-    {"grape_301.jpg", CHANNEL_RED, 1554022, 1574874, 12376, 11977, {1690, 1530}, {1794, 289}},
-    {"grape_303.jpg", CHANNEL_RED, 916409, 922952, 8076, 7755, {1677, 1555}, {1723, 617}},
-    {"zelkova.jpg", CHANNEL_GREY, 1510896, 1548147, 9479, 9027, {1228, 1845}, {3249, 286}},
-    {"grape.jpg", CHANNEL_RED, 1554022 / 4.0, 1574874 / 4.0, 12376 / 2.0, 11977 / 2.0, {460, 690}, {512, 82}}, /* grape_301 at half its size */
-};
-
-/* Millimetres to a pixel; 0 where the file doesn't say. */
-static double scale_of(const char *name) { return g_str_equal(name, "zelkova.jpg") ? 0.0 : 25.4 / (g_str_equal(name, "grape.jpg") ? 150.0 : 300.0); }
-
-/* NULL where there is none; that of params/scans is always there. */
-static Scan *real_scan(const char *name)
-{
-    const char *folder = g_getenv("VENATION_SCANS");
-    char *path = g_test_build_filename(G_TEST_DIST, "..", "..", "params", "scans", name, NULL);
-    if (!g_file_test(path, G_FILE_TEST_EXISTS) && !g_str_equal(name, "grape.jpg")) {
-        g_free(path);
-        path = folder ? g_build_filename(folder, name, NULL) : g_test_build_filename(G_TEST_DIST, "..", "..", "..", "shared", "scans", name, NULL);
-    }
-    Scan *s = NULL;
-    if (g_file_test(path, G_FILE_TEST_EXISTS) || g_str_equal(name, "grape.jpg")) {
-        GError *error = NULL;
-        s = scan_read(path, 0, &error);
-        g_assert_no_error(error);
-    } else {
-        g_test_message("%s is not here; VENATION_SCANS can name its folder", name);
-    }
-    g_free(path);
-    return s;
-}
-
-static void test_references(void)
-{
-    for (uint32_t k = 0; k < G_N_ELEMENTS(SCANS); k++) {
-        const Reference *r = &SCANS[k];
-        Scan *s = real_scan(r->file);
-        for (int levels = 0; s && levels < 2; levels++) {
-            ProfileDef def = profile_def_default();
-            def.threshold.channel = r->channel;
-            def.keep_stalk = true;
-            def.subpixel = levels;
-            gint64 start = g_get_monotonic_time();
-            GPtrArray *a = capture_ok(s, &def);
-            const Profile *p = a->pdata[0];
-            double kept = p->area - p->beyond, length = levels ? r->levels : r->binary;
-            g_test_message("%s %s: area %.0f (%+.3f %%), without what is beyond the threshold %.0f (%+.3f %%), perimeter %.0f (%+.2f %%), %u to %u nodes, %.2f s",
-                           r->file, levels ? "levels" : "binary", p->area, 100.0 * (p->area / r->filled - 1.0), kept, 100.0 * (kept / r->kept - 1.0),
-                           p->perimeter, 100.0 * (p->perimeter / length - 1.0), p->nodes, p->outline->n, (double)(g_get_monotonic_time() - start) * 1e-6);
-            g_assert_cmpfloat(fabs(p->area / r->filled - 1.0), <=, 0.005);
-            g_assert_cmpfloat(fabs(kept / r->kept - 1.0), <=, 0.005);
-            g_assert_cmpfloat(fabs(p->perimeter / length - 1.0), <=, g_str_equal(r->file, "grape.jpg") ? 0.1 : 0.03); /* halving smooths the margin */
-            assert_close(p->base, r->base, 40.0);
-            assert_close(p->tip, r->tip, 25.0);
-            g_ptr_array_free(a, TRUE);
-        }
-        scan_free(s);
-    }
-}
-
-/* By default: the red channel is chosen on red millimetre paper, and the petiole is cut off. */
-static void test_defaults_on_scans(void)
-{
-    for (uint32_t k = 0; k < G_N_ELEMENTS(SCANS); k++) {
-        Scan *s = real_scan(SCANS[k].file);
-        if (!s)
-            continue;
-        ProfileDef def = profile_def_default();
-        Threshold t;
-        GPtrArray *a = profile_capture(s, &def, &t, NULL);
-        g_assert_nonnull(a);
-        const Profile *p = a->pdata[0];
-        g_assert_true(k == 2 || t.channel == CHANNEL_RED);
-        g_assert_true(t.dark);
-        g_assert_cmpfloat(fabs(p->mm_per_pixel - scale_of(SCANS[k].file)), <=, 1e-9);
-        assert_close(p->base, SCANS[k].base, 40.0);
-        assert_close(p->tip, SCANS[k].tip, 25.0);
-        g_assert_cmpfloat(fabs(p->area / SCANS[k].filled - 1.0), <=, 0.02);
-        g_ptr_array_free(a, TRUE);
-        scan_free(s);
-    }
-}
-
-typedef struct {
-    const Scan *scan;
-    Channel channel;
-} Levels;
-
-static double scan_level(const void *user, uint32_t x, uint32_t y)
-{
-    const Levels *l = user;
-    return channel_value(l->scan, l->channel, x, y);
-}
-
-/* One row for a square size; outlines by pixels or by levels. */
-static void node_counts(const MarchField *f, uint32_t square)
-{
-    static const double tolerances[] = {16, 8, 5, 3, 2, 1, 0.5};
-    MarchLoops *l = march_loops(f, square);
-    uint32_t best = march_largest(l), i, j;
-    Polygon *p = polygon_new(l->p + l->start[best], l->start[best + 1] - l->start[best]);
-    g_assert_false(polygon_crossing(p, &i, &j));
-    GString *row = g_string_new(f->level ? "levels" : "pixels");
-    g_string_append_printf(row, " %4u %7u", square, p->n);
-    for (uint32_t n = 0; n < G_N_ELEMENTS(tolerances); n++) {
-        Polygon *q = ring_simplify(p, tolerances[n], NULL);
-        g_assert_false(polygon_crossing(q, &i, &j));
-        g_string_append_printf(row, " %5u", q->n);
-        polygon_free(q);
-    }
-    g_test_message("%s", row->str);
-    g_string_free(row, TRUE);
-    polygon_free(p);
-    march_loops_free(l);
-}
-
-/* Nodes against square size and tolerance, as tables 5.1 and 5.2; and none of the outlines crosses itself. */
-static void test_tables(void)
-{
-    for (uint32_t k = 0; k < G_N_ELEMENTS(SCANS); k++) {
-        Scan *s = real_scan(SCANS[k].file);
-        if (!s)
-            continue;
-        ThresholdDef by = {SCANS[k].channel, LEAF_BY_FRAME, -1.0};
-        Threshold t;
-        g_assert_true(threshold_find(s, &by, &t, NULL));
-        Mask m = {s->width, s->height, s->width, g_new(uint8_t, (gsize)s->width * s->height)};
-        threshold_apply(s, &t, m.px);
-        GArray *parts = mask_components(&m, 0.5);
-        const Component *c = &g_array_index(parts, Component, 0);
-        mask_take(&m, c);
-        g_test_message("%s: nodes by square (rows) and tolerance: none 16 8 5 3 2 1 0.5", SCANS[k].file);
-        Levels levels = {s, t.channel};
-        MarchField f = {.px = m.px, .width = m.width, .height = m.height, .test = MASK_THIS, .want = MASK_THIS,
-                        .x0 = c->box.x0, .y0 = c->box.y0, .x1 = c->box.x1, .y1 = c->box.y1, .user = &levels, .threshold = t.level};
-        for (uint32_t square = 1; square <= 16; square++)
-            for (int by_level = 0; by_level < 2; by_level++) {
-                f.level = by_level ? scan_level : NULL;
-                node_counts(&f, square);
-            }
-        g_array_free(parts, TRUE);
-        g_free(m.px);
-        scan_free(s);
-    }
-}
-
-/* The whole way for a few squares. */
-static void test_scan_squares(void)
-{
-    for (uint32_t k = 0; k < G_N_ELEMENTS(SCANS); k++) {
-        Scan *s = real_scan(SCANS[k].file);
-        for (uint32_t square = 4; s && square <= 16; square *= 4) {
-            ProfileDef def = profile_def_default();
-            def.square = square;
-            def.tolerance = 8.0 / square;
-            GPtrArray *a = capture_ok(s, &def);
-            assert_close(((Profile *)a->pdata[0])->base, SCANS[k].base, 40.0 + square);
-            g_ptr_array_free(a, TRUE);
-        }
-        scan_free(s);
-    }
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -987,9 +814,5 @@ int main(int argc, char **argv)
     g_test_add_func("/profile/depth", test_depth);
     g_test_add_func("/profile/squares_and_tolerances", test_squares_and_tolerances);
     g_test_add_func("/profile/anything", test_anything);
-    g_test_add_func("/scans/references", test_references);
-    g_test_add_func("/scans/defaults", test_defaults_on_scans);
-    g_test_add_func("/scans/tables", test_tables);
-    g_test_add_func("/scans/squares", test_scan_squares);
     return g_test_run();
 }
