@@ -751,6 +751,21 @@ def test_capture_ways():
     same([float(row[10]) < 1.0 for row in rows], [True] * 5) # mean deviation, pixels
 
 
+def test_shape_real_petiole():
+    """The model's petiole is as long as that of the scan."""
+    def stalked(length):
+        return lambda x, y: (60, 110, 40) if abs(x - 60) < 3 and 175 < y <= 180 + length else leaf_colour(x, y)
+    for length in 45, 75:
+        png("stalked.png", 120, 270, stalked(length))
+        done = run("shape", "stalked.png", *CAPTURE, "--formats", "obj", "-o", "x", "--set", "pose.preset=flat")
+        same(done.status, 0, done.err)
+        places = [[float(x) for x in line.split()[1:]] for line in open("x/stalked.obj", encoding="utf-8") if line.startswith("v ")]
+        wanted = length / 161 * 0.1  # of a blade 161 pixels and 0.1 metres long, which points to -z
+        found = max(p[2] for p in places)
+        if abs(found - wanted) > 0.1 * wanted:
+            raise AssertionError(f"{found} m for {wanted} m")
+
+
 def test_capture_refuses():
     png("leaf.png", 120, 200, leaf_colour)
     whole = open("leaf.png", "rb").read()
