@@ -6,12 +6,14 @@
 
 typedef struct {
     RunArgs run;
-    char *every, *frames, *maps;
+    char *back, *drawing, *every, *frames, *maps;
 } GrowArgs;
 
 #define FIELD(name) (gpointer) offsetof(GrowArgs, name)
 static const GOptionEntry options[] = {
     RUN_OPTIONS,
+    {"back", 0, 0, G_OPTION_ARG_FILENAME, FIELD(back), "Scan of the shadow side, as --set scan.back", "IMAGE"},
+    {"drawing", 0, 0, G_OPTION_ARG_FILENAME, FIELD(drawing), "Drawn veins instead of those found in the scan, as --set veins.drawing", "DRAWING"},
     {"maps", 0, 0, G_OPTION_ARG_FILENAME, FIELD(maps),
      "Maps to paint: all, none, or names with commas or spaces between them, as --set texture.maps", "LIST"},
     {"every", 0, 0, G_OPTION_ARG_FILENAME, FIELD(every), "Write a frame of every K-th step into the folder frames", "K"},
@@ -47,7 +49,9 @@ static gboolean read_args(Grow *g, const Verb *verb, const GrowArgs *a)
 
 static gboolean read_params(Grow *g, GError **error)
 {
-    if (!run_read_params(&g->run, g->run.path, error))
+    const GrowArgs *a = g->args;
+    if (!run_read_params(&g->run, g->run.path, error) || (a->back && !cli_set(g->run.params, "--back", "scan.back", a->back, error)) ||
+        (a->drawing && !cli_set(g->run.params, "--drawing", "veins.drawing", a->drawing, error)))
         return FALSE;
     if (!g->args->maps)
         return TRUE;

@@ -6,13 +6,15 @@
 
 typedef struct {
     RunArgs run;
-    char *params, *pose, *formats, *lod, *rig;
+    char *params, *back, *drawing, *pose, *formats, *lod, *rig;
 } ShapeArgs;
 
 #define FIELD(name) (gpointer) offsetof(ShapeArgs, name)
 static const GOptionEntry options[] = {
     RUN_OPTIONS,
     {"params", 0, 0, G_OPTION_ARG_FILENAME, FIELD(params), "Parameter file for a NETWORK or an IMAGE: colours, mesh, pose (default: the defaults)", "PARAMS"},
+    {"back", 0, 0, G_OPTION_ARG_FILENAME, FIELD(back), "Scan of the shadow side, as --set scan.back", "IMAGE"},
+    {"drawing", 0, 0, G_OPTION_ARG_FILENAME, FIELD(drawing), "Drawn veins instead of those found in the scan, as --set veins.drawing", "DRAWING"},
     {"pose", 0, 0, G_OPTION_ARG_FILENAME, FIELD(pose), "Ready-made pose, as --set pose.preset",
      "flat|cupped|folded|drooping|curled_tip|wavy|withered"},
     {"formats", 0, 0, G_OPTION_ARG_FILENAME, FIELD(formats),
@@ -31,7 +33,7 @@ static gboolean read_params(Run *run, const ShapeArgs *a, GError **error)
 {
     const struct {
         const char *option, *key, *value;
-    } given[] = {{"--pose", "pose.preset", a->pose}, {"--lod", "mesh.levels", a->lod}, {"--rig", "export.rig", a->rig}};
+    } given[] = {{"--back", "scan.back", a->back}, {"--drawing", "veins.drawing", a->drawing}, {"--pose", "pose.preset", a->pose}, {"--lod", "mesh.levels", a->lod}, {"--rig", "export.rig", a->rig}};
     if (!run_read_params(run, takes_params(run->path) ? a->params : run->path, error))
         return FALSE;
     for (gsize i = 0; i < G_N_ELEMENTS(given); i++)
@@ -106,6 +108,8 @@ static int run_shape(const Verb *verb, int argc, char **argv)
         if (run_read_args(&run, verb, &args.run)) {
             if (args.params && !takes_params(run.path))
                 cli_usage(verb, "--params goes with a network or an image; %s is the parameter file", run.path);
+            else if ((args.back || args.drawing) && is_network(run.path))
+                cli_usage(verb, "%s goes with a scan; %s is a network, which has its veins", args.back ? "--back" : "--drawing", run.path);
             else
                 status = carry_out(&run, &args, &shape);
         }

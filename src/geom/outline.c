@@ -5,6 +5,7 @@
 #include "geom/svgpath.h"
 #include "geom/svgscan.h"
 #include "geom/teeth.h"
+#include "geom/tracing.h"
 
 /* Leaves are at most this many times as large as they are long from base to tip, their mean width is at least this part
  * of their size (a long pine needle's is 0.004), and they have at most this many vertices.
@@ -115,7 +116,10 @@ static void lay_down(SvgShape *shape, const Affine *map)
 static bool read_shape(Maker *m, GError **error)
 {
     const OutlineDef *def = m->def;
-    if (def->file ? !svgfile_read(def->file, &m->shape, error) : !(m->shape.path = svgpath_parse(def->path, error)))
+    bool traced = def->file && tracing_is(def->file);
+    if (traced    ? !tracing_read(def->file, &m->shape, error)
+        : def->file ? !svgfile_read(def->file, &m->shape, error)
+                    : !(m->shape.path = svgpath_parse(def->path, error)))
         return false;
     double up = def->file ? -1.0 : 1.0;
     if (def->has_base)

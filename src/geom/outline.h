@@ -27,7 +27,7 @@ typedef struct {
 /* Where an outline comes from and what is done to it. outline_def_default() gives a plain ovate leaf. */
 typedef struct {
     const char *path;       /* SVG path data, x right and y UP, or NULL */
-    const char *file;       /* SVG file (y down), or NULL; exactly one of path and file is set */
+    const char *file;       /* SVG file, or a tracing (geom/tracing.h), y down; or NULL; exactly one of path and file is set */
     const char *where;      /* names the origin in error messages, e.g. "params/poplar.ini, [outline] path" */
     const SvgPlace *place;  /* of the file on an image, whose units (geom/svgplace.h) base and tip are returned in; NULL: the file's own */
     bool has_base, has_tip; /* given by hand, in the units of path or file; else by rule, see outline_new */

@@ -238,6 +238,36 @@ static void test_drawing(void)
     picture_clear(&pic);
 }
 
+/* A margin traced by hand, as a text file in pixels of the scan, is taken as it is. */
+static void test_traced(void)
+{
+    Picture pic;
+    GError *error = NULL;
+    picture_init(&pic, 400);
+    const Polygon *margin = pic.leaf->net->margin;
+    Polygon *truth = in_pixels(margin->v, margin->n, of_picture, &pic);
+    GString *text = g_string_new(NULL);
+    for (uint32_t i = 0; i < truth->n; i++)
+        g_string_append_printf(text, "%.3f\t%.3f\n", truth->v[i].x, truth->v[i].y);
+    char *file = g_build_filename(pic.dir, "blade.txt", NULL);
+    g_assert_true(g_file_set_contents(file, text->str, -1, NULL));
+    VenParams *p = scan_params(pic.front);
+    set(p, "outline.file", file);
+    Ground *g = ground_new(p->values, false, &error);
+    g_assert_no_error(error);
+    Polygon *found = in_pixels(g->outline->v, g->outline->n, of_ground, g);
+    g_assert_cmpfloat(farthest(found, truth, vec2(0, 0), 0.0), <, 0.01);
+    g_assert_cmpfloat(farthest(truth, found, vec2(0, 0), 0.0), <, 0.01);
+    g_assert_cmpfloat(vec_dist(affine_apply(&g->to_scan, vec2(0, 1)), to_pixel(&pic, vec2(0, pic.leaf->length))), <, 0.01);
+    polygon_free(truth);
+    polygon_free(found);
+    g_string_free(text, TRUE);
+    g_free(file);
+    ground_unref(g);
+    ven_params_free(p);
+    picture_clear(&pic);
+}
+
 /* ---- the other side ---- */
 
 /* The picture mirrored, turned by `angle` and moved, as when the leaf is turned over on the scanner; *map receives front to back pixels. */
@@ -331,6 +361,7 @@ int main(int argc, char **argv)
     g_test_add_func("/capture/outline", test_outline);
     g_test_add_func("/capture/veins", test_veins);
     g_test_add_func("/capture/drawing", test_drawing);
+    g_test_add_func("/capture/traced", test_traced);
     g_test_add_func("/capture/back", test_back);
     g_test_add_func("/capture/photo", test_photo);
     return g_test_run();

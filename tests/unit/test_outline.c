@@ -517,6 +517,74 @@ static void test_noise(void)
     g_assert_cmpuint(made, >, total / 10);
 }
 
+/* --- tracings --- */
+
+static Polygon *trace(const char *text, GError **error)
+{
+    char *dir = g_dir_make_tmp("venation-outline-XXXXXX", NULL), *path = g_build_filename(dir, "blade.txt", NULL);
+    g_assert_true(g_file_set_contents(path, text, -1, NULL));
+    OutlineDef def = path_def(NULL);
+    def.file = path;
+    Polygon *p = outline_new(&def, error);
+    g_unlink(path);
+    g_rmdir(dir);
+    g_free(path);
+    g_free(dir);
+    return p;
+}
+
+/* Points of a text file, y down, are the path that they'd be with y up, however they are parted, and whether the first is there again or not. */
+static void test_tracing(void)
+{
+    OutlineDef def = path_def("M 100 -900 L 500.5 -500 L 130 -20 L -2e2 -480 Z");
+    Polygon *known = make(&def);
+    static const char *const text[] = {
+        "100 900\n500.5 500\n130 20\n-2e2 480\n",
+        "100\t900\r\n500.5\t500\r\n130\t20\r\n-200\t480\r\n100\t900\r\n",
+        "\xEF\xBB\xBF\n 100,900\n 500.5, 500 \n+130;20\n\t-200 480\n100 900\n\n \n",
+    };
+    for (guint k = 0; k < G_N_ELEMENTS(text); k++) {
+        GError *error = NULL;
+        Polygon *p = trace(text[k], &error);
+        g_assert_no_error(error);
+        check_promises(p);
+        g_assert_cmpuint(p->n, ==, known->n);
+        for (uint32_t i = 0; i < p->n; i++)
+            g_assert_true(p->v[i].x == known->v[i].x && p->v[i].y == known->v[i].y);
+        polygon_free(p);
+    }
+    polygon_free(known);
+}
+
+static void test_tracing_refused(void)
+{
+    static const struct {
+        const char *text;
+        int code;
+        const char *part;
+    } bad[] = {
+        {"1 2\n3 4 5\n6 7\n", OUTLINE_ERROR_SYNTAX, "blade.txt:2: '3 4 5' is no point"},
+        {"1 2\n3 4\n6\n", OUTLINE_ERROR_SYNTAX, "blade.txt:3: '6' is no point"},
+        {"1 2\n3 y\n6 7\n", OUTLINE_ERROR_SYNTAX, "blade.txt:2: '3 y' is no point"},
+        {"1 2\nnan 3\n6 7\n", OUTLINE_ERROR_SYNTAX, "blade.txt:2: 'nan 3' is no point"},
+        {"1 2\n3 2000000\n6 7\n", OUTLINE_ERROR_SYNTAX, "-1000000 to 1000000"},
+        {"1 2\n3 4\n\n6 7\n1 8\n", OUTLINE_ERROR_SYNTAX, "blade.txt:3: '' is no point"}, /* two lines */
+        {"1 2\n", OUTLINE_ERROR_SHAPE, "the path is empty"},
+        {"1 2\n3 4\n5 6\n", OUTLINE_ERROR_SHAPE, "no area"},
+        {"0 10\n10 0\n10 10\n0 0\n", OUTLINE_ERROR_SHAPE, "crosses or touches itself near 5,5"},
+        {"points\n1 2\n3 4\n9 4\n", OUTLINE_ERROR_SYNTAX, "not an SVG file"},
+        {"", OUTLINE_ERROR_SYNTAX, "not an SVG file"},
+    };
+    for (guint k = 0; k < G_N_ELEMENTS(bad); k++) {
+        GError *error = NULL;
+        g_assert_null(trace(bad[k].text, &error));
+        if (!error || error->domain != OUTLINE_ERROR || !strstr(error->message, bad[k].part))
+            g_error("'%s' does not say '%s'", error ? error->message : "", bad[k].part);
+        g_assert_error(error, OUTLINE_ERROR, bad[k].code);
+        g_error_free(error);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -534,5 +602,7 @@ int main(int argc, char **argv)
     g_test_add_func("/outline/refused/crossing-place", test_crossing_place);
     g_test_add_func("/outline/narrow", test_narrow);
     g_test_add_func("/outline/noise", test_noise);
+    g_test_add_func("/outline/tracing", test_tracing);
+    g_test_add_func("/outline/tracing_refused", test_tracing_refused);
     return g_test_run();
 }

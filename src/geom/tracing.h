@@ -1,0 +1,14 @@
+/* The margin of a leaf as a tracing tool writes it: plain text, a point a line. */
+#ifndef GEOM_TRACING_H
+#define GEOM_TRACING_H
+
+#include "geom/svgfile.h"
+
+/* Whether a file begins with a number, as no SVG file does. False for one that can't be read. */
+bool tracing_is(const char *file);
+
+/* x y a line (blanks, commas or tabs between them), y down as in images, blank lines only before and after; closed by its last side. The same
+ * as a polygon of SVG with these points. No base and no tip are marked. False with OUTLINE_ERROR_READ or _SYNTAX, naming file and line. */
+bool tracing_read(const char *file, SvgShape *out, GError **error);
+
+#endif
