@@ -30,9 +30,10 @@ static void owner_row(uint32_t y, void *user)
     const uint32_t *owner = label_row(a->p, &a->p->owner, y);
     const float *blade = a->p->net->margin != NULL ? field_row(a->p, &a->p->blade, y) : NULL;
     float *out = plane_row(a->p, a->plane, y);
-    for (uint32_t x = 0; x < a->p->width; x++) /* veins end at the margin */
-        if ((owner[x] & OWNER_BESIDE) == 0 && (blade == NULL || blade[x] >= 0.5f))
-            out[x] = (float)value_at(a, owner[x], x, y);
+    for (uint32_t x = 0; x < a->p->width; x++) { /* veins end at the margin */
+        bool of_vein = (owner[x] & OWNER_BESIDE) == 0 && (blade == NULL || blade[x] >= 0.5f);
+        out[x] = of_vein ? (float)value_at(a, owner[x], x, y) : 0.0f;
+    }
 }
 
 static void distance_row(uint32_t y, void *user)
@@ -77,6 +78,8 @@ Plane *paint_attribute(Painter *p, MapId id)
         painter_away(p);
         if (p->net->n_edges > 0)
             painter_rows(p, p->y0, p->y1, distance_row, &a);
+        else
+            memset(plane->px, 0, n * sizeof(float));
     } else {
         painter_owner(p);
         if (p->net->margin != NULL)

@@ -8,14 +8,19 @@ static const Capsule *stroke_shape(uint32_t i, const void *user)
     return &((const Strokes *)user)->v[i].shape;
 }
 
+void painter_away_ready(Painter *p)
+{
+    const Strokes *s = painter_strokes(p);
+    if (p->to_vein == NULL)
+        p->to_vein = nearest_new(&p->bins, s->n, stroke_shape, s, 4.0 * (p->width + p->rows));
+}
+
 const float *painter_away(Painter *p)
 {
     painter_blade(p);
     uint32_t from = field_begin(p, &p->away);
     if (from < p->bottom) {
-        const Strokes *s = painter_strokes(p);
-        if (p->to_vein == NULL)
-            p->to_vein = nearest_new(&p->bins, s->n, stroke_shape, s, 4.0 * (p->width + p->rows));
+        painter_away_ready(p);
         nearest_fill(p->to_vein, p->pool, from, p->bottom, field_row(p, &p->blade, from), field_row(p, &p->away, from), NULL);
     }
     return p->away.px;

@@ -155,6 +155,7 @@ Painter *painter_new(const Network *net, const Frame *frame, const PaintStyle *s
     p->rows = frame->height;
     p->padding = style->padding * MAX(p->width, p->rows) / usual_size;
     p->circle = circle_new();
+    p->spare = g_ptr_array_new_with_free_func((GDestroyNotify)plane_free);
     take_margin(p);
     survey(p);
     painter_band(p, 0, p->rows);
@@ -175,7 +176,7 @@ static void list_fields(Painter *p, Field *list[N_FIELDS])
 static void drop_kept(Painter *p)
 {
     for (int i = 0; i < MAP_COUNT; i++) {
-        plane_free(p->kept[i]);
+        painter_give_back(p, p->kept[i]);
         p->kept[i] = NULL;
     }
 }
@@ -191,6 +192,8 @@ void painter_free(Painter *p)
     if (p == NULL)
         return;
     drop_kept(p);
+    g_ptr_array_free(p->spare, TRUE);
+    g_free(p->blurred);
     Field *field[N_FIELDS];
     list_fields(p, field);
     for (int i = 0; i < N_FIELDS; i++)
@@ -259,21 +262,69 @@ static Capsule stroke_area(uint32_t i, const void *user)
     return capsule_new(k->a, k->ra + 0.75, k->b, k->rb + 0.75);
 }
 
+/* For what is seen of veins, and for relief: the bulge is smooth, so that strokes may be coarser, which matters for wide veins of short segments. */
+static const StrokeTolerance tolerance[2] = {{0.04, 0.0}, {0.1, 0.03}};
+
 const Strokes *painter_strokes(Painter *p)
 {
-    if (p->strokes == NULL) {
-        p->strokes = strokes_new(p->net, &p->frame, (StrokeTolerance){0.04, 0.0});
+    if (p->strokes == NULL)
+        p->strokes = strokes_new(p->net, &p->frame, tolerance[0]);
+    if (p->bins.start == NULL)
         bins_init(&p->bins, p->width, p->rows, p->strokes->n, stroke_area, p->strokes);
-    }
     return p->strokes;
 }
 
-Plane *painter_plane(const Painter *p, MapId id)
+const Strokes *painter_ridges(Painter *p)
 {
-    const MapInfo *info = &infos[id];
-    Plane *plane = plane_new(p->width, p->y1 - p->y0, info->channels, info->kind);
-    plane->unit = info->unit;
+    if (p->ridges == NULL)
+        p->ridges = strokes_new(p->net, &p->frame, tolerance[1]);
+    return p->ridges;
+}
+
+/* Strokes and ridges. */
+static void make_strokes(Painter *p)
+{
+    Strokes *both[2];
+    if (p->strokes != NULL || p->ridges != NULL)
+        return;
+    strokes_make(p->net, &p->frame, 2, tolerance, both);
+    p->strokes = both[0];
+    p->ridges = both[1];
+}
+
+/* ---- planes ---- */
+
+/* The last one with room enough; NULL: there is none. */
+static Plane *take_spare(Painter *p, uint32_t channels)
+{
+    for (guint i = p->spare->len; i-- > 0;) {
+        Plane *plane = g_ptr_array_index(p->spare, i);
+        if (plane->channels == channels && plane->height >= p->y1 - p->y0)
+            return g_ptr_array_steal_index(p->spare, i);
+    }
+    return NULL;
+}
+
+Plane *painter_sheet(Painter *p, uint32_t channels, PlaneKind kind)
+{
+    Plane *plane = take_spare(p, channels);
+    if (plane == NULL)
+        return plane_new(p->width, p->y1 - p->y0, channels, kind);
+    *plane = (Plane){p->width, p->y1 - p->y0, channels, kind, 0.0, 1.0, "", plane->px};
     return plane;
+}
+
+Plane *painter_plane(Painter *p, MapId id)
+{
+    Plane *plane = painter_sheet(p, infos[id].channels, infos[id].kind);
+    plane->unit = infos[id].unit;
+    return plane;
+}
+
+void painter_give_back(Painter *p, Plane *plane)
+{
+    if (plane != NULL)
+        g_ptr_array_add(p->spare, plane);
 }
 
 /* ---- loops ---- */
@@ -313,21 +364,34 @@ void painter_tiles(Painter *p, const Bins *bins, uint32_t from, LoopFn fn, void 
 }
 
 /* What the leaf as a whole gives to maps, longest to make first. */
-enum { READY_AREOLES, READY_STROKES, READY_RIDGES, N_READY };
+enum { READY_AREOLES, READY_STROKES, READY_NOISE, N_READY };
+
+static void strokes_ready(Painter *p, bool shaped)
+{
+    if (shaped)
+        make_strokes(p);
+    painter_strokes(p);
+    if (shaped)
+        painter_ridges_ready(p);
+    if (shaped || p->expected[MAP_DISTANCE])
+        painter_away_ready(p);
+}
 
 static void make_ready(uint32_t first, uint32_t last, void *user)
 {
     Painter *p = user;
-    bool shaped = false;
+    bool shaped = false, looks = false, veins = p->expected[MAP_VEIN_MASK] || p->expected[MAP_VEIN_ORDER] || p->expected[MAP_DISTANCE];
     for (int i = MAP_BASE_COLOR; i <= MAP_THICKNESS; i++)
         shaped = shaped || (p->expected[i] && i != MAP_OPACITY);
+    for (int i = 0; i < MAP_COUNT; i++)
+        looks = looks || (p->expected[i] && paint_is_look((MapId)i));
     for (uint32_t i = first; i < last; i++)
         if (i == READY_AREOLES && p->expected[MAP_AREOLE])
             areole_map_ready(p);
-        else if (i == READY_STROKES && (shaped || p->expected[MAP_VEIN_MASK] || p->expected[MAP_VEIN_ORDER]))
-            painter_strokes(p);
-        else if (i == READY_RIDGES && shaped)
-            painter_ridges_ready(p);
+        else if (i == READY_STROKES && (shaped || veins))
+            strokes_ready(p, shaped);
+        else if (i == READY_NOISE && looks)
+            painter_noise_ready(p);
 }
 
 /* Each of these is made by one thread; so they are made side by side, when it is known what will be needed. */
@@ -387,7 +451,7 @@ static void ink_row(uint32_t y, void *user)
 Plane *painter_veins(Painter *p)
 {
     double size = MAX(p->width, p->rows);
-    Ink k = {p, plane_new(p->width, p->y1 - p->y0, 1, PLANE_DATA), CLAMP(1.5 * size / 2048.0, 0.75, LINE_REACH - 1.0)};
+    Ink k = {p, painter_sheet(p, 1, PLANE_DATA), CLAMP(1.5 * size / 2048.0, 0.75, LINE_REACH - 1.0)};
     painter_cover(p);
     painter_inset(p);
     painter_rows(p, p->y0, p->y1, ink_row, &k);

@@ -83,6 +83,9 @@ void painter_expect(Painter *p, const gboolean *wanted);
 /* Paints one map; the shared parts (coverage, nearest vein, distance) are computed once and kept in the painter. */
 Plane *painter_paint(Painter *p, MapId id);
 
+/* Takes back a plane, which the painter made or NULL, instead of plane_free: the next ones need no memory from the system then. */
+void painter_give_back(Painter *p, Plane *plane);
+
 /* Black veins on white, the paper's own look, and a thin grey line along the margin. One channel, values 0 … 1. */
 Plane *painter_veins(Painter *p);
 

@@ -61,6 +61,9 @@ struct Painter {
     bool expected[MAP_COUNT]; /* maps that will be asked for, see painter_expect */
     bool ready;               /* what they need of the leaf as a whole is there */
     Plane *kept[MAP_COUNT];   /* painted along with others, not asked for yet */
+    GPtrArray *spare;         /* planes that were given back */
+    int32_t *blurred;         /* scratch for the arch, n_blurred of them */
+    gsize n_blurred;
 
     Field cover;   /* part of the pixel covered by veins within the blade */
     Field blade;   /* part of the pixel covered by the blade */
@@ -77,6 +80,7 @@ struct Painter {
 
 /* Each makes what its name says, in the rows at hand. */
 const Strokes *painter_strokes(Painter *p);
+const Strokes *painter_ridges(Painter *p);
 const float *painter_cover(Painter *p);
 const float *painter_blade(Painter *p);
 const uint32_t *painter_owner(Painter *p);
@@ -84,8 +88,12 @@ const float *painter_away(Painter *p);
 const float *painter_inset(Painter *p);
 const float *painter_arch(Painter *p);
 void painter_relief(Painter *p); /* bulge, crease and nearness */
-void painter_ridges_ready(Painter *p); /* what it needs of the leaf as a whole */
 void painter_noise(Painter *p);
+
+/* What some of them need of the leaf as a whole; with one thread each, and the first two one after the other. */
+void painter_ridges_ready(Painter *p);
+void painter_away_ready(Painter *p);
+void painter_noise_ready(Painter *p);
 
 /* Rows around the painted ones that the arch depends on, pixels. */
 uint32_t arch_reach(const Painter *p);
@@ -138,14 +146,19 @@ bool painter_padded(const Painter *p, uint32_t x, uint32_t y, Vec2 *at);
 Plane *paint_attribute(Painter *p, MapId id);
 Plane *paint_surface(Painter *p, MapId id);
 Plane *paint_look(Painter *p, MapId id);
+bool paint_is_look(MapId id);
 
 /* Areoles (areole.c). */
 Plane *paint_areole(Painter *p);
 void areole_map_ready(Painter *p);
 void areole_map_free(AreoleMap *m);
 
-/* A plane for the painted rows of a map, with its kind, unit and range. */
-Plane *painter_plane(const Painter *p, MapId id);
+/* Of the blade, or of the image when there is none; segments. */
+Box2 painter_blade_box(const Painter *p);
+
+/* A plane for the painted rows of a map, with its kind, unit and range; and any other one. What their pixels hold is left from other planes. */
+Plane *painter_plane(Painter *p, MapId id);
+Plane *painter_sheet(Painter *p, uint32_t channels, PlaneKind kind);
 
 /* Its row that shows row y of the image. */
 static inline float *plane_row(const Painter *p, Plane *plane, uint32_t y)

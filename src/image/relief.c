@@ -219,11 +219,9 @@ static void raise_tiles(uint32_t first, uint32_t last, void *user)
 
 void painter_ridges_ready(Painter *p)
 {
-    if (p->ridges != NULL)
-        return;
-    /* The bulge is smooth: strokes may be coarser than for coverage, which matters for wide veins of short segments. */
-    p->ridges = strokes_new(p->net, &p->frame, (StrokeTolerance){0.1, 0.03});
-    bins_init(&p->ridge_bins, p->width, p->rows, p->ridges->n, ridge_shape, p);
+    painter_ridges(p);
+    if (p->ridge_bins.start == NULL)
+        bins_init(&p->ridge_bins, p->width, p->rows, p->ridges->n, ridge_shape, p);
 }
 
 void painter_relief(Painter *p)

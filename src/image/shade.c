@@ -252,8 +252,8 @@ static void look_colour(const Look *l, const Spots *s, float *out)
         if (s->cover[i] > 0.0)
             vein_colour(l, s, i, colour);
     for (uint32_t i = 0; i < s->n; i++)
-        for (int c = 0; c < 3 && s->shown[i]; c++)
-            out[3 * i + (uint32_t)c] = (float)clamped(colour[c][i], 0.0, 1.0);
+        for (int c = 0; c < 3; c++)
+            out[3 * i + (uint32_t)c] = s->shown[i] ? (float)clamped(colour[c][i], 0.0, 1.0) : 0.0f;
 }
 
 /* ---- other looks ---- */
@@ -293,8 +293,7 @@ static void look_stretch(const Look *l, const Spots *s, float *out)
         return;
     }
     for (uint32_t i = 0; i < s->n; i++)
-        if (s->shown[i])
-            out[i] = (float)value[i];
+        out[i] = s->shown[i] ? (float)value[i] : 0.0f;
 }
 
 static void look_row(uint32_t y, void *user)
@@ -304,10 +303,15 @@ static void look_row(uint32_t y, void *user)
     Spots s;
     for (uint32_t x = 0; x < width; x += STRETCH) {
         s.n = MIN(width - x, (uint32_t)STRETCH);
-        if (!spots_fill(v, x, y, &s))
-            continue;
-        for (uint32_t i = 0; i < v->n; i++)
-            look_stretch(&v->look[i], &s, plane_row(v->p, v->look[i].plane, y) + (gsize)x * v->look[i].plane->channels);
+        bool any = spots_fill(v, x, y, &s);
+        for (uint32_t i = 0; i < v->n; i++) {
+            Plane *plane = v->look[i].plane;
+            float *out = plane_row(v->p, plane, y) + (gsize)x * plane->channels;
+            if (any)
+                look_stretch(&v->look[i], &s, out);
+            else
+                memset(out, 0, s.n * plane->channels * sizeof *out);
+        }
     }
 }
 
@@ -328,6 +332,7 @@ static void photo_row(uint32_t y, void *user)
 {
     const Look *l = user;
     float *out = plane_row(l->p, l->plane, y);
+    memset(out, 0, (gsize)l->p->width * l->plane->channels * sizeof *out);
     for (uint32_t x = 0; x < l->p->width; x++)
         photo_at(l, x, y, out + (gsize)x * l->plane->channels);
 }
@@ -341,50 +346,16 @@ static Plane *paint_photo(Look *l)
     return l->plane;
 }
 
-/* ---- noise ---- */
+/* ---- maps ---- */
 
-/* Of the blade, or of the image when there is none. */
-static Box2 blade_box(const Painter *p)
-{
-    Vec2 far = vec2(p->frame.corner.x + p->width / p->frame.scale, p->frame.corner.y - p->rows / p->frame.scale);
-    return p->net->margin != NULL ? p->net->margin->box : (Box2){p->frame.corner.x, far.y, far.x, p->frame.corner.y};
-}
+static const MapId looks[N_LOOKS] = {MAP_BASE_COLOR, MAP_ABAXIAL_BASE_COLOR, MAP_ROUGHNESS, MAP_TRANSLUCENCY};
 
-/* From a third of the leaf down to a part of a mesh. */
-static void choose_noise(Painter *p)
+bool paint_is_look(MapId id)
 {
-    Box2 box = blade_box(p);
-    double length = MAX(MAX(box.x1 - box.x0, box.y1 - box.y0), 1e-6);
-    double wave[N_NOISE] = {0.33 * length, 0.10 * length, MAX(0.022 * length, 2.0 * p->spacing), 0.45 * p->spacing,
-                            0.26 * length};
-    for (uint32_t i = 0; i < N_NOISE; i++)
-        noise_init(&p->noise[i], p->style.seed, i, wave[i], box, p->frame.scale);
-    p->has_noise = true;
-}
-
-static void noise_of_row(uint32_t y, void *user)
-{
-    const Painter *p = user;
-    const float *blade = field_row(p, &p->blade, y);
-    uint32_t first = 0, last = p->width;
-    while (first < last && !(blade[first] > 0.0f))
-        first++;
-    while (last > first && !(blade[last - 1] > 0.0f))
-        last--;
-    Vec2 start = vec2(p->frame.corner.x + 0.5 / p->frame.scale, p->frame.corner.y - (y + 0.5) / p->frame.scale);
-    for (int i = 0; i < N_NOISE; i++)
-        noise_row(&p->noise[i], start, 1.0 / p->frame.scale, first, last, field_row(p, &p->grain[i], y));
-}
-
-void painter_noise(Painter *p)
-{
-    if (!p->has_noise)
-        choose_noise(p);
-    painter_blade(p);
-    uint32_t from = p->bottom;
-    for (int i = 0; i < N_NOISE; i++)
-        from = field_begin(p, &p->grain[i]);
-    painter_rows(p, from, p->bottom, noise_of_row, p);
+    bool is = false;
+    for (int i = 0; i < N_LOOKS; i++)
+        is = is || looks[i] == id;
+    return is;
 }
 
 static Look look_of(Painter *p, MapId id)
@@ -400,7 +371,6 @@ static Look look_of(Painter *p, MapId id)
 /* Those of the maps that are wanted along with map `id`; they are kept until they are asked for. */
 static void add_others(View *v, MapId id)
 {
-    static const MapId looks[N_LOOKS] = {MAP_BASE_COLOR, MAP_ABAXIAL_BASE_COLOR, MAP_ROUGHNESS, MAP_TRANSLUCENCY};
     for (int i = 0; i < N_LOOKS; i++) {
         Painter *p = v->p;
         bool photo = looks[i] <= MAP_ABAXIAL_BASE_COLOR && p->style.photo[looks[i]] != NULL;
@@ -415,7 +385,7 @@ Plane *paint_look(Painter *p, MapId id)
 {
     if (p->kept[id] != NULL)
         return g_steal_pointer(&p->kept[id]);
-    View v = {.p = p, .box = blade_box(p), .look = {look_of(p, id)}, .n = 1};
+    View v = {.p = p, .box = painter_blade_box(p), .look = {look_of(p, id)}, .n = 1};
     if (v.look[0].photo)
         return paint_photo(&v.look[0]);
     add_others(&v, id);

@@ -185,7 +185,7 @@ static void paint_scene(Scene *c)
     c->translucency = d->backlight > 0.0 ? painter_paint(p, MAP_TRANSLUCENCY) : NULL;
     painter_blade(p);
     c->blade = field_row(p, &p->blade, p->y0);
-    c->scene = plane_new(p->width, p->y1 - p->y0, 3, PLANE_COLOUR);
+    c->scene = painter_sheet(p, 3, PLANE_COLOUR);
     painter_rows(p, p->y0, p->y1, scene_row, c);
     p->y0 = y0;
     p->y1 = y1;
@@ -196,12 +196,12 @@ Plane *specimen_paint(Specimen *s)
     Painter *p = s->p;
     Scene c = {.s = s};
     paint_scene(&c);
-    c.out = plane_new(p->width, p->y1 - p->y0, 3, PLANE_COLOUR);
+    c.out = painter_sheet(p, 3, PLANE_COLOUR);
     painter_rows(p, p->y0, p->y1, picture_row, &c);
-    plane_free(c.base);
-    plane_free(c.normal);
-    plane_free(c.ao);
-    plane_free(c.translucency);
-    plane_free(c.scene);
+    painter_give_back(p, c.base);
+    painter_give_back(p, c.normal);
+    painter_give_back(p, c.ao);
+    painter_give_back(p, c.translucency);
+    painter_give_back(p, c.scene);
     return c.out;
 }

@@ -288,37 +288,75 @@ static void emit(Builder *b, uint32_t vein, uint8_t order)
     }
 }
 
-Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol)
+static void builder_init(Builder *b)
+{
+    b->knot = g_array_new(FALSE, FALSE, sizeof(Knot));
+    b->apart = g_array_new(FALSE, FALSE, sizeof(double));
+    b->number = g_array_new(FALSE, FALSE, sizeof(double));
+    b->line = g_array_new(FALSE, FALSE, sizeof(Knot));
+    b->kept = g_array_new(FALSE, FALSE, sizeof(uint32_t));
+    b->stack = g_array_new(FALSE, FALSE, sizeof(uint32_t));
+}
+
+static void builder_clear(Builder *b)
+{
+    g_array_free(b->knot, TRUE);
+    g_array_free(b->apart, TRUE);
+    g_array_free(b->number, TRUE);
+    g_array_free(b->line, TRUE);
+    g_array_free(b->kept, TRUE);
+    g_array_free(b->stack, TRUE);
+}
+
+/* Edges of the run that edge[0] begins. Memory is asked for what comes next, as edges of a vein are born, and lie, far apart. */
+static uint32_t run_length(const Network *net, const uint32_t *edge, uint32_t most)
+{
+    enum { AHEAD = 16 };
+    uint32_t n = 0;
+    do {
+        if (most - n > 2 * AHEAD) {
+            uint32_t far = edge[n + 2 * AHEAD], near = edge[n + AHEAD];
+            __builtin_prefetch(&net->vein[far]);
+            __builtin_prefetch(&net->tail[far]);
+            __builtin_prefetch(&net->head[far]);
+            __builtin_prefetch(&net->width[far]);
+            __builtin_prefetch(&net->node[net->tail[near]]);
+        }
+        n++;
+    } while (n < most && net->vein[edge[n]] == net->vein[edge[0]] && net->tail[edge[n]] == net->head[edge[n - 1]]);
+    return n;
+}
+
+void strokes_make(const Network *net, const Frame *frame, uint32_t n, const StrokeTolerance *tol, Strokes **out)
 {
     uint32_t *edge = edges_by_vein(net);
-    Builder b = {.tol = tol, .out = g_new0(Strokes, 1)};
-    b.knot = g_array_new(FALSE, FALSE, sizeof(Knot));
-    b.apart = g_array_new(FALSE, FALSE, sizeof(double));
-    b.number = g_array_new(FALSE, FALSE, sizeof(double));
-    b.line = g_array_new(FALSE, FALSE, sizeof(Knot));
-    b.kept = g_array_new(FALSE, FALSE, sizeof(uint32_t));
-    b.stack = g_array_new(FALSE, FALSE, sizeof(uint32_t));
+    Builder b;
+    builder_init(&b);
+    for (uint32_t k = 0; k < n; k++)
+        out[k] = g_new0(Strokes, 1);
     for (uint32_t first = 0, next; first < net->n_edges; first = next) {
         const uint32_t *e = edge + first;
-        uint32_t n = 1;
-        while (first + n < net->n_edges && net->vein[e[n]] == net->vein[e[0]] && net->tail[e[n]] == net->head[e[n - 1]])
-            n++;
-        next = first + n;
-        collect_knots(&b, net, frame, e, n);
+        next = first + run_length(net, e, net->n_edges - first);
+        collect_knots(&b, net, frame, e, next - first);
         blend_radii(&b);
         blend_radii(&b);
-        smooth(&b);
-        simplify(&b);
-        emit(&b, net->vein[e[0]], net->order[e[0]]);
+        for (uint32_t k = 0; k < n; k++) {
+            b.tol = tol[k];
+            b.out = out[k];
+            smooth(&b);
+            simplify(&b);
+            emit(&b, net->vein[e[0]], net->order[e[0]]);
+        }
     }
-    g_array_free(b.knot, TRUE);
-    g_array_free(b.apart, TRUE);
-    g_array_free(b.number, TRUE);
-    g_array_free(b.line, TRUE);
-    g_array_free(b.kept, TRUE);
-    g_array_free(b.stack, TRUE);
+    builder_clear(&b);
     g_free(edge);
-    return b.out;
+}
+
+Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol)
+{
+    Strokes *out;
+    strokes_make(net, frame, 1, &tol, &out);
+    return out;
 }
 
 void strokes_free(Strokes *s)

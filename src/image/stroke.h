@@ -32,6 +32,9 @@ typedef struct {
  * a node as the edges that meet there on average, cut into as few straight pieces as the tolerance allows. O(n log n).
  */
 Strokes *strokes_new(const Network *net, const Frame *frame, StrokeTolerance tol);
+
+/* The same for each of n tolerances at once: the network is walked along but once, which is most of the work. */
+void strokes_make(const Network *net, const Frame *frame, uint32_t n, const StrokeTolerance *tol, Strokes **out);
 void strokes_free(Strokes *s);
 
 #endif

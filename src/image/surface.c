@@ -83,13 +83,16 @@ const float *painter_arch(Painter *p)
     uint32_t y0 = p->y0 > p->top + around ? p->y0 - around : p->top, y1 = MIN(p->y1 + around, p->bottom);
     uint32_t from = p->y0 > p->top + reach ? p->y0 - reach : p->top, rows = MIN(p->y1 + reach, p->bottom) - from;
     gsize n = (gsize)p->width * rows;
-    Arch a = {p, from, g_new(int32_t, n), g_new(int32_t, n)};
+    if (2 * n > p->n_blurred) {
+        g_free(p->blurred);
+        p->blurred = g_new(int32_t, 2 * n);
+        p->n_blurred = 2 * n;
+    }
+    Arch a = {p, from, p->blurred, p->blurred + n};
     painter_rows(p, from, from + rows, arch_row, &a);
     image_blur(p->pool, a.arch, p->width, rows, arch_blur(p));
     image_blur(p->pool, a.blade, p->width, rows, arch_blur(p));
     painter_rows(p, y0, y1, settle_row, &a);
-    g_free(a.arch);
-    g_free(a.blade);
     return p->arch.px;
 }
 
@@ -250,8 +253,8 @@ static void thickness_row(uint32_t y, void *user)
         double thin = thinnest + (1.0 - thinnest) * smoothstep((double)inset[x] / p->rim);
         if (blade[x] > 0.0f)
             out[x] = (float)(p->style.thickness * thin + (double)bulge[x]);
-        else if (painter_padded(p, x, y, &at))
-            out[x] = (float)(p->style.thickness * thinnest);
+        else
+            out[x] = painter_padded(p, x, y, &at) ? (float)(p->style.thickness * thinnest) : 0.0f;
     }
 }
 

@@ -115,7 +115,7 @@ static gboolean write_band(Atlas *a, uint32_t y0, uint32_t y1, GError **error)
         a->page[i].plane = paint_page(a, a->page[i].id);
     pool_for(a->pool, a->n_sheets, 1, fill_sheets, a);
     for (uint32_t i = 0; i < a->n_pages; i++)
-        plane_free(a->page[i].plane);
+        painter_give_back(a->painter, a->page[i].plane);
     return sheets_fine(a, error);
 }
 

@@ -19,6 +19,7 @@ typedef struct {
     uint32_t *ring;  /* [n_rings + 1] */
     uint32_t *node;  /* [ring[n_rings]] nodes of the network, or from its n_nodes on places where edges cross */
     Vec2 *place;     /* [n_places] of both */
+    Vec2 *at;        /* [ring[n_rings]] the places of `node`, one after the other */
     double *area;    /* [n] without islands, segments² */
 } Areoles;
 

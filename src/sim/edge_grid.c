@@ -48,9 +48,11 @@ static void columns_in_row(const EdgeGrid *g, Vec2 a, Vec2 b, uint32_t row, doub
 static void enter(EdgeGrid *g, Vec2 a, Vec2 b, uint32_t edge, double pad, bool fill)
 {
     uint32_t y0 = edge_grid_row(g, MIN(a.y, b.y) - pad), y1 = edge_grid_row(g, MAX(a.y, b.y) + pad);
+    uint32_t left = edge_grid_column(g, MIN(a.x, b.x) - pad), right = edge_grid_column(g, MAX(a.x, b.x) + pad);
     for (uint32_t y = y0; y <= y1; y++) {
-        uint32_t x0, x1;
-        columns_in_row(g, a, b, y, pad, &x0, &x1);
+        uint32_t x0 = left, x1 = right;
+        if (y0 < y1 && left < right)
+            columns_in_row(g, a, b, y, pad, &x0, &x1);
         for (uint32_t x = x0; x <= x1; x++) {
             uint32_t *at = &g->start[(gsize)y * g->nx + x];
             if (fill)

@@ -4,8 +4,10 @@
 
 #include "geom/hilbert.h"
 
+enum { AHEAD = 16 }; /* nodes that memory is asked for before it is their turn */
+
 /* By counting twice: by the lower half of the key's upper bits, then, keeping the order, by their upper half. */
-static uint32_t *along_curve(const Vec2 *node, uint32_t n)
+uint32_t *edge_order_nodes(const Vec2 *node, uint32_t n)
 {
     enum { HALF = 11, VALUES = 1 << HALF };
     uint32_t *key = g_new(uint32_t, (gsize)n + 1), *order[2] = {g_new(uint32_t, (gsize)n + 1), g_new(uint32_t, (gsize)n + 1)};
@@ -32,26 +34,33 @@ static uint32_t *along_curve(const Vec2 *node, uint32_t n)
     return order[1];
 }
 
-void edge_order_init(EdgeOrder *o, const Vec2 *node, uint32_t n_nodes, const uint32_t (*edge)[2], uint32_t n_edges)
+void edge_order_init(EdgeOrder *o, const uint32_t *was, uint32_t n, const Vec2 *node, uint32_t n_nodes, const uint32_t (*edge)[2], uint32_t n_edges)
 {
-    uint32_t *number = g_new(uint32_t, (gsize)n_nodes + 1), *first = g_new(uint32_t, (gsize)n_nodes + 1), n = 0;
-    *o = (EdgeOrder){n_nodes, n_edges, g_new(Vec2, (gsize)n_nodes + 1), along_curve(node, n_nodes), NULL, g_new(uint32_t, (gsize)n_edges + 1)};
+    uint32_t *number = g_new(uint32_t, (gsize)n_nodes + 1), *first = g_new(uint32_t, (gsize)n_nodes + 1), to = 0;
+    *o = (EdgeOrder){n, n_edges, g_new(Vec2, (gsize)n + 1), was, NULL, g_new(uint32_t, (gsize)n_edges + 1)};
     o->edge = g_malloc_n((gsize)n_edges + 1, sizeof *o->edge);
-    for (uint32_t i = 0; i < n_nodes; i++) {
-        o->node[i] = node[o->was[i]];
-        number[o->was[i]] = i;
+    for (uint32_t i = 0; i < n; i++) {
+        o->node[i] = node[was[i]];
+        number[was[i]] = i;
     }
     for (uint32_t v = 0, e = 0; v <= n_nodes; v++) {
         first[v] = e;
         while (e < n_edges && edge[e][0] == v)
             e++;
     }
-    for (uint32_t i = 0; i < n_nodes; i++)
-        for (uint32_t e = first[o->was[i]]; e < first[o->was[i] + 1]; e++) {
-            o->edge[n][0] = i;
-            o->edge[n][1] = number[edge[e][1]];
-            o->was_edge[n++] = e;
+    for (uint32_t i = 0; i < n; i++) {
+        if (n - i > 2 * AHEAD) { /* nodes lie all over memory */
+            __builtin_prefetch(&first[was[i + 2 * AHEAD]]);
+            __builtin_prefetch(&edge[first[was[i + AHEAD]]]);
         }
+        for (uint32_t e = first[was[i]]; e < first[was[i] + 1]; e++) {
+            o->edge[to][0] = i;
+            o->edge[to][1] = edge[e][1];
+            o->was_edge[to++] = e;
+        }
+    }
+    for (uint32_t e = 0; e < n_edges; e++)
+        o->edge[e][1] = number[o->edge[e][1]];
     g_free(number);
     g_free(first);
 }
@@ -59,7 +68,6 @@ void edge_order_init(EdgeOrder *o, const Vec2 *node, uint32_t n_nodes, const uin
 void edge_order_clear(EdgeOrder *o)
 {
     g_free(o->node);
-    g_free(o->was);
     g_free(o->edge);
     g_free(o->was_edge);
 }

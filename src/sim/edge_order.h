@@ -7,14 +7,18 @@
 
 typedef struct {
     uint32_t n_nodes, n_edges;
-    Vec2 *node;           /* [n_nodes] along Hilbert's curve */
-    uint32_t *was;        /* [n_nodes] their numbers before */
+    Vec2 *node;           /* [n_nodes] */
+    const uint32_t *was;  /* [n_nodes] their numbers before; not owned */
     uint32_t (*edge)[2];  /* [n_edges] by the first node */
     uint32_t *was_edge;   /* [n_edges] */
 } EdgeOrder;
 
-/* Edges come in order of their first nodes, which stay the first ones. O(nodes + edges). */
-void edge_order_init(EdgeOrder *o, const Vec2 *node, uint32_t n_nodes, const uint32_t (*edge)[2], uint32_t n_edges);
+/* Nodes along Hilbert's curve. O(nodes). */
+uint32_t *edge_order_nodes(const Vec2 *node, uint32_t n);
+
+/* Of `n` of the nodes, those that edges have and maybe more, in the order `was`, which outlives it; edges, which are in order of their first nodes, come in
+ * that one, and their first nodes stay the first ones. O(n_nodes + n_edges). */
+void edge_order_init(EdgeOrder *o, const uint32_t *was, uint32_t n, const Vec2 *node, uint32_t n_nodes, const uint32_t (*edge)[2], uint32_t n_edges);
 void edge_order_clear(EdgeOrder *o);
 
 #endif

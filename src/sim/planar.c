@@ -22,6 +22,7 @@ typedef struct {
 
 typedef struct {
     GArray *node;      /* Vec2 */
+    uint32_t *order;   /* [nodes] */
     uint32_t *same;    /* [nodes] a node of lower index in the same place, or the node itself; roots are lowest */
     uint32_t (*edge)[2];
     uint32_t n_edges;
@@ -130,6 +131,26 @@ static uint32_t choose(const Cutter *c, uint32_t (*list)[2], uint32_t *was)
     return n;
 }
 
+static int by_number(gconstpointer x, gconstpointer y, gpointer user)
+{
+    uint32_t a = *(const uint32_t *)x, b = *(const uint32_t *)y;
+    return (a > b) - (a < b);
+}
+
+/* The nodes of n edges, each once. */
+static uint32_t *list_ends(const uint32_t (*edge)[2], uint32_t n, uint32_t *n_ends)
+{
+    uint32_t *end = g_new(uint32_t, 2 * (gsize)n + 1), count = 0;
+    memcpy(end, edge, n * sizeof *edge);
+    if (n > 0)
+        g_qsort_with_data(end, (gint)(2 * n), sizeof *end, by_number, NULL);
+    for (uint32_t i = 0; i < 2 * n; i++)
+        if (count == 0 || end[i] != end[count - 1])
+            end[count++] = end[i];
+    *n_ends = count;
+    return end;
+}
+
 static void look_around(Cutter *c, const EdgeOrder *o)
 {
     EdgeGrid g;
@@ -146,13 +167,15 @@ static void look_around(Cutter *c, const EdgeOrder *o)
 static bool look(Cutter *c, bool all)
 {
     const Vec2 *node = (const Vec2 *)(const void *)c->node->data;
+    uint32_t *end = NULL;
     EdgeOrder o;
     if (all) {
-        edge_order_init(&o, node, c->node->len, (const uint32_t (*)[2])c->edge, c->n_edges);
+        edge_order_init(&o, c->order, c->node->len, node, c->node->len, (const uint32_t (*)[2])c->edge, c->n_edges);
     } else {
-        uint32_t (*list)[2] = g_malloc_n((gsize)c->n_edges + 1, sizeof *list), *was = g_new(uint32_t, (gsize)c->n_edges + 1);
+        uint32_t (*list)[2] = g_malloc_n((gsize)c->n_edges + 1, sizeof *list), *was = g_new(uint32_t, (gsize)c->n_edges + 1), n_ends;
         uint32_t n = choose(c, list, was);
-        edge_order_init(&o, node, c->node->len, (const uint32_t (*)[2])list, n);
+        end = list_ends((const uint32_t (*)[2])list, n, &n_ends);
+        edge_order_init(&o, end, n_ends, node, c->node->len, (const uint32_t (*)[2])list, n);
         for (uint32_t i = 0; i < n; i++)
             o.was_edge[i] = was[o.was_edge[i]];
         g_free(list);
@@ -163,6 +186,7 @@ static bool look(Cutter *c, bool all)
         memset(c->fresh->data, FALSE, c->fresh->len);
     look_around(c, &o);
     edge_order_clear(&o);
+    g_free(end);
     return c->crossing->len <= c->most;
 }
 
@@ -209,9 +233,10 @@ static void add_crossings(Cutter *c)
         if (k == 0 || by_edges(&g_array_index(all, Crossing, k - 1), &g_array_index(all, Crossing, k), NULL) != 0)
             add_crossing(c, g_array_index(all, Crossing, k));
     c->same = g_renew(uint32_t, c->same, (gsize)c->node->len + 1);
+    c->order = g_renew(uint32_t, c->order, (gsize)c->node->len + 1);
     g_array_set_size(c->fresh, c->node->len);
     for (uint32_t v = before; v < c->node->len; v++) {
-        c->same[v] = v;
+        c->same[v] = c->order[v] = v;
         ((uint8_t *)c->fresh->data)[v] = TRUE;
     }
     g_array_set_size(all, 0);
@@ -290,6 +315,7 @@ static void cutter_init(Cutter *c, const Network *net)
     c->crossing = g_array_new(FALSE, FALSE, sizeof(Crossing));
     c->fresh = g_array_sized_new(FALSE, TRUE, 1, net->n_nodes);
     g_array_set_size(c->fresh, net->n_nodes);
+    c->order = edge_order_nodes(net->node, net->n_nodes);
     c->same = g_new(uint32_t, (gsize)net->n_nodes + 1);
     for (uint32_t v = 0; v < net->n_nodes; v++) {
         c->same[v] = v;
@@ -322,6 +348,7 @@ Planar *planar_new(const Network *net)
         p->n_nodes = c.node->len;
         p->n_edges = c.n_edges;
         p->edge = g_steal_pointer(&c.edge);
+        p->order = g_steal_pointer(&c.order);
         p->node = (Vec2 *)(void *)g_array_free(g_steal_pointer(&c.node), FALSE);
     }
     if (c.node)
@@ -331,6 +358,7 @@ Planar *planar_new(const Network *net)
     g_array_free(c.fresh, TRUE);
     g_free(c.edge);
     g_free(c.same);
+    g_free(c.order);
     return p;
 }
 
@@ -340,5 +368,6 @@ void planar_free(Planar *p)
         return;
     g_free(p->node);
     g_free(p->edge);
+    g_free(p->order);
     g_free(p);
 }

@@ -8,6 +8,7 @@ typedef struct {
     uint32_t n_nodes, n_edges;
     Vec2 *node;          /* [n_nodes] those of the network, then those where edges cross */
     uint32_t (*edge)[2]; /* [n_edges] the lower node first; in order of both, none twice */
+    uint32_t *order;     /* [n_nodes] nodes as they follow one another in the plane, but for those where edges cross, which come last */
 } Planar;
 
 /* Nodes in one place become the one of the lowest index, edges that are there twice one, edges without length none. An edge that runs
