@@ -90,10 +90,11 @@ Ground *ground_new_on(GroundScan *sheet, const Params *p, bool veins, GError **e
 {
     Ground *g = g_atomic_rc_box_new0(Ground);
     g->note = g_string_new(NULL);
-    if (find(g, p, sheet, veins, error)) {
-        ground_make_textures(g, p);
+    gboolean found = find(g, p, sheet, veins, error);
+    if (found && ground_make_textures(g, p, sheet, error))
         return g;
-    }
+    if (!found && sheet)
+        ground_return_scans(g, sheet);
     ground_unref(g);
     return NULL;
 }

@@ -21,24 +21,37 @@ void ground_find_holes(Ground *g, const Params *p)
     polygon_free(outline);
 }
 
-/* Carries the leaf's colours on; `known`: the threshold that parts it from what is behind it, else one is looked for. */
-static void make_texture(const Ground *g, const Params *p, Scan *scan, const Affine *to_scan, const Threshold *known)
+/* What parts the leaf on its back from what is behind it; NULL where nothing does. */
+static const Threshold *find_threshold(const Ground *g, const Params *p, Threshold *own)
+{
+    if (!g->back || !params_switch(p, PARAM_SCAN_TEXTURE))
+        return NULL;
+    Polygon *outline = ground_outline_in(g, g->back, &g->to_back);
+    ThresholdDef def = settings_profile(p, g->back->height).threshold;
+    bool found = openings_threshold(g->back, outline, &def, own);
+    polygon_free(outline);
+    return found ? own : NULL;
+}
+
+/* Carries the leaf's colours on. */
+static void make_texture(const Ground *g, Scan *scan, const Affine *to_scan, const Threshold *known)
 {
     enum { AROUND = 64 };
-    Threshold own;
     Polygon *outline = ground_outline_in(g, scan, to_scan);
-    ThresholdDef def = settings_profile(p, scan->height).threshold;
-    if (!known && openings_threshold(scan, outline, &def, &own))
-        known = &own;
     scan_fill(scan, outline, known, scan_fill_inset(outline->area), AROUND);
     polygon_free(outline);
 }
 
-void ground_make_textures(Ground *g, const Params *p)
+gboolean ground_make_textures(Ground *g, const Params *p, GroundScan *sheet, GError **error)
 {
+    Threshold own;
+    const Threshold *known = find_threshold(g, p, &own); /* in all of the scan */
+    if (sheet && !ground_part_scans(g, p, sheet, error))
+        return FALSE;
     if (!g->scan || !params_switch(p, PARAM_SCAN_TEXTURE))
-        return;
-    make_texture(g, p, g->scan, &g->to_scan, g->has_threshold ? &g->threshold : NULL);
+        return TRUE;
+    make_texture(g, g->scan, &g->to_scan, g->has_threshold ? &g->threshold : NULL);
     if (g->back)
-        make_texture(g, p, g->back, &g->to_back, NULL);
+        make_texture(g, g->back, &g->to_back, known);
+    return TRUE;
 }

@@ -6,8 +6,13 @@
 #include "lib/ground.h"
 #include "lib/settings.h"
 
+typedef struct {
+    uint32_t width, height; /* pixels; 0: there is none */
+} ScanSize;
+
 struct GroundScan {
-    Scan *scan, *back;        /* back: NULL when none is given */
+    Scan *scan, *back;        /* NULL: lent to a leaf or kept by one, or no back is given */
+    ScanSize size, back_size;
     GPtrArray *profile;       /* Profile; NULL for those that were given away */
     GPtrArray *back_profile;  /* of the leaves on the back; NULL when none is given */
     Threshold threshold;
@@ -32,8 +37,15 @@ bool ground_place(const Ground *g, const Params *p, const char *file, SvgPlace *
 
 /* ---- ground_scan.c ---- */
 
-/* The scan and its back, read anew or as the sheet has them; *back_profiles receives the leaves on the back, NULL without one. */
-gboolean ground_read_scans(Ground *g, const Params *p, const GroundScan *sheet, GPtrArray **back_profiles, GError **error);
+/* The scan and its back, read anew or lent by the sheet; *back_profiles receives the leaves on the back, NULL without one. */
+gboolean ground_read_scans(Ground *g, const Params *p, GroundScan *sheet, GPtrArray **back_profiles, GError **error);
+
+/* Once nothing else is to be found in them, lent scans go back to the sheet, and the leaf has a copy of what lies around it; but one that takes up most of a
+ * scan keeps it, as two of it might be too many for the memory. */
+gboolean ground_part_scans(Ground *g, const Params *p, GroundScan *sheet, GError **error);
+
+/* Gives lent scans back as they are, when there will be no leaf. */
+void ground_return_scans(Ground *g, GroundScan *sheet);
 
 /* ---- ground_outline.c ---- */
 
@@ -53,7 +65,7 @@ gboolean ground_find_veins(Ground *g, const Params *p, GError **error);
 /* Openings in the blade, whatever its outline comes from. */
 void ground_find_holes(Ground *g, const Params *p);
 
-/* Makes the scans textures: they are looked at no more. */
-void ground_make_textures(Ground *g, const Params *p);
+/* Parts the scans from the sheet, if there is one, and makes them textures: they are looked at no more. */
+gboolean ground_make_textures(Ground *g, const Params *p, GroundScan *sheet, GError **error);
 
 #endif

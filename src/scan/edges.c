@@ -61,6 +61,25 @@ static bool check_sigma(double sigma, double least, GError **error)
     return false;
 }
 
+static bool check_sigma_of(EdgesOperator op, double sigma, GError **error)
+{
+    return check_sigma(sigma, op == EDGES_LAPLACIAN ? smallest_laplacian : 0.0, error);
+}
+
+static bool check_thresholds(const EdgesDef *def, GError **error)
+{
+    if (def->automatic || (def->low >= 0.0 && def->low <= def->high && def->high < HUGE_VAL))
+        return true;
+    g_set_error(error, EDGES_ERROR, EDGES_ERROR_SETTINGS,
+                "the low threshold is %g and the high one %g; the low one must lie between 0 and the high one", def->low, def->high);
+    return false;
+}
+
+bool edges_check(const EdgesDef *def, GError **error) { return check_thresholds(def, error) && check_sigma_of(def->op, def->sigma, error); }
+
+/* Smoothing, differences of neighbours, and once more neighbours for the ridges and crossings of these. */
+uint32_t edges_reach(EdgesOperator op, double sigma) { return (uint32_t)ceil((op == EDGES_LAPLACIAN ? laplacian_reach : gaussian_reach) * sigma) + 2; }
+
 /* --- smoothing --- */
 
 static GreyImage *smooth(const GreyImage *in, double sigma)
@@ -155,13 +174,13 @@ static GreyImage *ridges(const GreyImage *gx, const GreyImage *gy, const GreyIma
 static const int around_x[8] = {1, 1, 0, -1, -1, -1, 0, 1}, around_y[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
 /* Whether an edge pixel can go: it has two neighbours or more, and those hang together without it, so it is the inside of a bend. */
-static bool is_spare(const GreyImage *map, uint32_t x, uint32_t y)
+static bool is_spare(const Mask *m, uint8_t bit, uint32_t x, uint32_t y)
 {
     bool on[8];
     int count = 0, parts = 0;
     for (int k = 0; k < 8; k++) {
         int64_t nx = (int64_t)x + around_x[k], ny = (int64_t)y + around_y[k];
-        on[k] = nx >= 0 && ny >= 0 && nx < map->width && ny < map->height && at(map, nx, ny) > 0.0;
+        on[k] = nx >= 0 && ny >= 0 && nx < m->width && ny < m->height && (*mask_at(m, (uint32_t)nx, (uint32_t)ny) & bit);
         count += on[k];
     }
     /* Walked round by sides; a corner between two sides that are both off stands alone. (8-connectivity number of Yokoi et al. 1975.) */
@@ -170,12 +189,23 @@ static bool is_spare(const GreyImage *map, uint32_t x, uint32_t y)
     return count >= 2 && parts == 1;
 }
 
+void edges_thin(const Mask *m, uint8_t bit)
+{
+    for (uint32_t y = 0; y < m->height; y++)
+        for (uint32_t x = 0; x < m->width; x++)
+            if ((*mask_at(m, x, y) & bit) && is_spare(m, bit, x, y))
+                *mask_at(m, x, y) &= (uint8_t)~bit;
+}
+
 static void thin(GreyImage *map)
 {
-    for (uint32_t y = 0; y < map->height; y++)
-        for (uint32_t x = 0; x < map->width; x++)
-            if (map->px[(gsize)y * map->width + x] > 0.0f && is_spare(map, x, y))
-                map->px[(gsize)y * map->width + x] = 0.0f;
+    Mask m = {map->width, map->height, map->width, g_new(uint8_t, pixel_count(map))};
+    for (gsize i = 0; i < pixel_count(map); i++)
+        m.px[i] = map->px[i] > 0.0f;
+    edges_thin(&m, 1);
+    for (gsize i = 0; i < pixel_count(map); i++)
+        map->px[i] = m.px[i];
+    g_free(m.px);
 }
 
 /* --- Laplacian of Gaussian --- */
@@ -222,13 +252,13 @@ static GreyImage *gradient_response(const GreyImage *in, EdgesOperator op, doubl
 {
     GreyImage *soft = smooth(in, sigma), *gx, *gy;
     edges_gradient(soft, op == EDGES_CANNY ? EDGES_SOBEL : op, &gx, &gy);
+    grey_image_free(soft);
     GreyImage *out = magnitude(gx, gy);
     if (op == EDGES_CANNY) {
         GreyImage *m = out;
         out = ridges(gx, gy, m);
         grey_image_free(m);
     }
-    grey_image_free(soft);
     grey_image_free(gx);
     grey_image_free(gy);
     return out;
@@ -236,7 +266,7 @@ static GreyImage *gradient_response(const GreyImage *in, EdgesOperator op, doubl
 
 GreyImage *edges_response(const GreyImage *in, EdgesOperator op, double sigma, GError **error)
 {
-    if (!check_image(in, error) || !check_sigma(sigma, op == EDGES_LAPLACIAN ? smallest_laplacian : 0.0, error))
+    if (!check_image(in, error) || !check_sigma_of(op, sigma, error))
         return NULL;
     if (op != EDGES_LAPLACIAN)
         return gradient_response(in, op, sigma);
@@ -313,11 +343,8 @@ static double grey_range(const GreyImage *in)
 
 GreyImage *edges_map(const GreyImage *in, const EdgesDef *def, double used[2], GError **error)
 {
-    if (!def->automatic && !(def->low >= 0.0 && def->low <= def->high && def->high < HUGE_VAL)) {
-        g_set_error(error, EDGES_ERROR, EDGES_ERROR_SETTINGS,
-                    "the low threshold is %g and the high one %g; the low one must lie between 0 and the high one", def->low, def->high);
+    if (!check_thresholds(def, error))
         return NULL;
-    }
     GreyImage *response = edges_response(in, def->op, def->sigma, error);
     if (!response)
         return NULL;

@@ -4,9 +4,7 @@
 #ifndef SCAN_EDGES_H
 #define SCAN_EDGES_H
 
-#include <glib.h>
-#include <stdbool.h>
-#include <stdint.h>
+#include "scan/mask.h"
 
 /* Pixel (i, j) is the square [i, i+1] × [j, j+1] of the image plane; its value stands for its centre. */
 typedef struct {
@@ -55,9 +53,18 @@ void edges_gradient(const GreyImage *in, EdgesOperator op, GreyImage **gx, GreyI
  * left or upper one), else 0. O(pixels · sigma). */
 GreyImage *edges_response(const GreyImage *in, EdgesOperator op, double sigma, GError **error);
 
+/* Pixels beyond which nothing has any say in a response: a part of an image with so much around it responds as the whole does. */
+uint32_t edges_reach(EdgesOperator op, double sigma);
+
+/* Whether edges_response takes that sigma, and edges_map those thresholds; false and `error` where not. */
+bool edges_check(const EdgesDef *def, GError **error);
+
 /* The threshold that parts the responses, zeros too, into two classes of greatest variance between them (Otsu 1979), over 256 classes of
  * size from 0 to the greatest response; the middle of several equally good. 0 when all are 0. */
 double edges_otsu(const GreyImage *response);
+
+/* Thins what has the bit, row by row, to lines one pixel wide, 8-connected. */
+void edges_thin(const Mask *m, uint8_t bit);
 
 /* The edge map: 1 on edges, 0 elsewhere. Canny's is thinned to lines one pixel wide, 8-connected. Automatic thresholds are high = Otsu's,
  * but no less than a millionth of the image's grey range (Laplacian: over sigma²), which is rounding noise; low = high, for Canny 0.4

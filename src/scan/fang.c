@@ -1,7 +1,6 @@
 #include "scan/fang.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "scan/fang_draw.h"
 #include "scan/fang_edges.h"
@@ -26,7 +25,6 @@ void fang_profile_free(FangProfile *p)
 {
     if (!p)
         return;
-    grey_image_free(p->edges);
     polygon_free(p->border);
     polygon_free(p->contour);
     if (p->corners)
@@ -55,18 +53,6 @@ static MaskBox around(const Scan *s, Box2 b, double margin)
                      (uint32_t)CLAMP(ceil(b.x1 + margin), 0.0, w), (uint32_t)CLAMP(ceil(s->height - b.y0 + margin), 0.0, h)};
 }
 
-/* The operator whose response tells how far a place is from an edge, too: Sobel's for those that respond on lines only. */
-static EdgesOperator broad(EdgesOperator op) { return op == EDGES_CANNY || op == EDGES_LAPLACIAN ? EDGES_SOBEL : op; }
-
-/* The edge map of part of the scan, in the whole of it. */
-static GreyImage *put_back(const GreyImage *part, MaskBox b, const Scan *s)
-{
-    GreyImage *g = grey_image_new(s->width, s->height);
-    for (uint32_t y = 0; y < part->height; y++)
-        memcpy(g->px + (gsize)(b.y0 + y) * g->width + b.x0, part->px + (gsize)y * part->width, part->width * sizeof *part->px);
-    return g;
-}
-
 /* Whether the edges can be the leaf's margin. */
 static bool check_region(const FangProfile *p, MaskBox box, GError **error)
 {
@@ -92,21 +78,13 @@ static bool find_region(const Scan *s, const Mask *m, MaskBox leaf, FangProfile 
 {
     double sigma = isfinite(out->used.sigma) ? CLAMP(out->used.sigma, 0.0, 100.0) : 0.0;
     MaskBox box = around(s, (Box2){leaf.x0, s->height - 1.0 - leaf.y1, leaf.x1 + 1.0, s->height - (double)leaf.y0}, GROUND + fang_band(sigma) + 5.0 * sigma);
-    GreyImage *grey = grey_part(s, out->threshold.channel, box), *response = NULL, *map = NULL;
+    FangGrey grey = fang_grey(s, out->threshold.channel, box);
     Mask w = mask_window(m, box);
     double level = s->depth == 8 ? out->threshold.level : out->threshold.level / 257.0;
-    bool ok = fang_choose_edges(grey, level, &w, &out->used, error) &&
-              (response = edges_response(grey, broad(out->used.op), out->used.sigma, error)) &&
-              (map = edges_map(grey, &out->used, NULL, error));
-    if (ok) {
-        out->region = fang_region(response, map, out->used.sigma, &w);
-        out->edges = put_back(map, box, s);
-        ok = check_region(out, leaf, error);
-    }
-    grey_image_free(grey);
-    grey_image_free(response);
-    grey_image_free(map);
-    return ok;
+    if (!fang_choose_edges(&grey, level, &w, &out->used, error) || !edges_check(&out->used, error))
+        return false;
+    out->region = fang_region(&grey, &out->used, &w);
+    return check_region(out, leaf, error);
 }
 
 /* The border of the largest region enclosed, without the petiole, starting at the base. */
@@ -142,18 +120,18 @@ static bool find_border(const Scan *s, const Mask *m, const FangDef *def, FangPr
     return true;
 }
 
-static bool find_contour(const Scan *s, FangProfile *out, GError **error)
+static void find_contour(const Scan *s, FangProfile *out)
 {
+    EdgesOperator op = fang_broad(out->used.op);
     MaskBox box = around(s, out->border->box, MARGIN + 5.0 * out->used.sigma);
-    GreyImage *grey = grey_part(s, out->threshold.channel, box);
-    GreyImage *response = edges_response(grey, broad(out->used.op), out->used.sigma, error);
-    grey_image_free(grey);
-    if (!response)
-        return false;
-    Strength strength = {response, broad(out->used.op), vec2(box.x0, box.y0), s->width, s->height};
+    FangGrey grey = fang_grey(s, out->threshold.channel, box);
+    FangSparse *response = fang_sparse_new(grey.width, grey.height);
+    for (uint32_t i = 0; i < out->border->n; i++)
+        fang_sparse_want_around(response, out->border->v[i].x - box.x0, s->height - out->border->v[i].y - box.y0, FANG_DRAW_REACH);
+    fang_sparse_respond(response, &grey, op, out->used.sigma);
+    Strength strength = {response, op, vec2(box.x0, box.y0), s->width, s->height};
     out->contour = fang_draw(out->border, &strength);
-    grey_image_free(response);
-    return true;
+    fang_sparse_free(response);
 }
 
 static bool find_corners(const Scan *s, const FangDef *def, FangProfile *out, GError **error)
@@ -183,8 +161,10 @@ static bool find_fit(const FangDef *def, FangProfile *out, GError **error)
 static bool capture(const Scan *s, const Mask *m, const FangDef *def, FangProfile *out, GError **error)
 {
     MaskBox leaf;
-    return fang_rough(s, &out->threshold, def, m, &leaf, error) && find_region(s, m, leaf, out, error) && find_border(s, m, def, out, error) &&
-           find_contour(s, out, error) && find_corners(s, def, out, error) && find_fit(def, out, error);
+    if (!fang_rough(s, &out->threshold, def, m, &leaf, error) || !find_region(s, m, leaf, out, error) || !find_border(s, m, def, out, error))
+        return false;
+    find_contour(s, out);
+    return find_corners(s, def, out, error) && find_fit(def, out, error);
 }
 
 FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error)

@@ -30,7 +30,6 @@ typedef struct {
 FangDef fang_def_default(void);
 
 typedef struct {
-    GreyImage *edges;   /* the edge map around the leaf, 1 on edges; of the scan's size */
     Threshold threshold;
     EdgesDef used;      /* sigma and thresholds that were used */
     FangMatch region;     /* how well edges and rough region agree */
@@ -43,7 +42,7 @@ typedef struct {
     double mm_per_pixel;
 } FangProfile;
 
-/* Pixels of a scan that fang_capture takes. Besides the scan it holds 5 bytes a pixel of it, and 24 to 35 a pixel of the leaf's box. */
+/* Pixels of a scan that fang_capture takes. Besides the scan it holds a byte a pixel of it, and 40 a pixel of the leaf's box while corners are looked for. */
 #define FANG_MAX_PIXELS ((uint64_t)1 << 27)
 
 /* One leaf of a scan. The paper takes the operator's edges as the contour, from pictures where these are closed and nothing else is
@@ -52,8 +51,8 @@ typedef struct {
  * the edges. When the fit crosses itself (deep teeth, few points) pieces are parted until it doesn't; that always ends, at the contour
  * itself.
  * NULL and SCAN_ERROR_NO_LEAF when there is no leaf, there are edges along less than half of its margin, or they enclose more than
- * 2 % more or less than is leaf by its level; SCAN_ERROR_SIZE beyond FANG_MAX_PIXELS; SCAN_ERROR_VALUE, EDGES_ERROR, CORNERS_ERROR or
- * BEZIERFIT_ERROR for settings that can't be used. */
+ * 2 % more or less than is leaf by its level; SCAN_ERROR_SIZE beyond FANG_MAX_PIXELS; SCAN_ERROR_VALUE, EDGES_ERROR, CORNERS_ERROR or BEZIERFIT_ERROR
+ * for settings that can't be used. */
 FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error);
 void fang_profile_free(FangProfile *p);
 

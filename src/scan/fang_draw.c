@@ -16,7 +16,7 @@ static double strength_at(const Strength *s, Vec2 p)
     for (int k = 0; k < 4; k++) {
         double cx = i + (k & 1), cy = j + (k >> 1), share = (1.0 - fabs(x - cx)) * (1.0 - fabs(y - cy));
         if (cx >= 0.0 && cy >= 0.0 && cx < (double)s->response->width && cy < (double)s->response->height)
-            sum += share * (double)s->response->px[(size_t)cy * s->response->width + (size_t)cx];
+            sum += share * (double)fang_sparse_at(s->response, (uint32_t)cx, (uint32_t)cy);
     }
     return sum;
 }

@@ -3,14 +3,16 @@
 #define SCAN_FANG_DRAW_H
 
 #include "geom/polygon.h"
-#include "scan/edges.h"
+#include "scan/fang_tiles.h"
+
+#define FANG_DRAW_REACH 4.0 /* pixels: what is looked at, half a pixel to either side of it, and one for the neighbours */
 
 /* Edge strength in a part of the image. */
 typedef struct {
-    const GreyImage *response; /* edges_response */
+    const FangSparse *response; /* edges_response, within FANG_DRAW_REACH of the border */
     EdgesOperator op;
-    Vec2 corner;               /* of the part, in the image plane, y down */
-    double width, height;      /* of the whole image, pixels */
+    Vec2 corner;                /* of the part, in the image plane, y down */
+    double width, height;       /* of the whole image, pixels */
 } Strength;
 
 /* Moves every vertex of a region's border (y-up pixels, a vertex a pixel or more) along its normal to the strongest response within 1.5

@@ -31,19 +31,54 @@ static double quantile(GArray *v, double share)
     return n > 0 ? (double)px[(guint)(share * n)] : 0.0;
 }
 
-/* The response that is usual around the leaf, out of its margin's reach: the noise, texture or grid of the ground; the leaf's own veins
- * don't matter, as they lie out of the band in which edges are looked for. The Laplacian's and Canny's is 0 but on lines, some tenth of the pixels where all is
- * noise. */
-static double usual_response(const GreyImage *r, EdgesOperator op, const Mask *m)
+/* A response and where in the image it was read: tile by tile they come in another order than rows have. */
+typedef struct {
+    gsize at;
+    float value;
+} Reading;
+
+static int by_place(gconstpointer a, gconstpointer b, gpointer user)
 {
-    GArray *v = g_array_new(FALSE, FALSE, sizeof(float));
-    gsize n = (gsize)r->width * r->height, step = n / SAMPLES | 1; /* odd: not in step with rows */
-    for (gsize i = 0; i < n; i += step)
-        if (!*mask_at(m, (uint32_t)(i % r->width), (uint32_t)(i / r->width)))
-            g_array_append_val(v, r->px[i]);
-    double usual = quantile(v, lines_only(op) ? LINES : 0.5);
+    const Reading *p = a, *q = b;
+    return (p->at > q->at) - (p->at < q->at);
+}
+
+/* Of readings, which are freed. */
+static double quantile_of(GArray *reading, double share)
+{
+    GArray *v = g_array_sized_new(FALSE, FALSE, sizeof(float), reading->len);
+    if (reading->len > 0)
+        g_qsort_with_data(reading->data, (gint)reading->len, sizeof(Reading), by_place, NULL);
+    for (guint i = 0; i < reading->len; i++)
+        g_array_append_val(v, g_array_index(reading, Reading, i).value);
+    g_array_free(reading, TRUE);
+    double at = quantile(v, share);
     g_array_free(v, TRUE);
-    return usual;
+    return at;
+}
+
+/* --- readings of a tile --- */
+
+typedef struct {
+    const FangGrey *grey;
+    const Mask *m;
+    float level;
+    GArray *ground, *margin; /* Reading */
+} Readings;
+
+/* Around the leaf, out of its margin's reach: the noise, texture or grid of the ground; the leaf's own veins don't matter, as they lie out of the band in
+ * which edges are looked for. */
+static void read_ground(const Readings *r, const FangTile *t, const GreyImage *response)
+{
+    gsize w = r->grey->width, step = w * r->grey->height / SAMPLES | 1; /* odd: not in step with rows */
+    for (uint32_t y = t->core.y0; y <= t->core.y1; y++)
+        for (gsize i = (y * w + t->core.x0 + step - 1) / step * step; i <= y * w + t->core.x1; i += step) {
+            uint32_t x = (uint32_t)(i - y * w);
+            if (*mask_at(r->m, x, y))
+                continue;
+            Reading here = {i, fang_tile_at(response, t, x, y)};
+            g_array_append_val(r->ground, here);
+        }
 }
 
 static float greatest_near(const GreyImage *r, uint32_t x, uint32_t y)
@@ -55,38 +90,66 @@ static float greatest_near(const GreyImage *r, uint32_t x, uint32_t y)
     return most;
 }
 
-/* M for a smoothed image; 0 when the level never crosses the threshold, which is in grey values, in the band. */
-static double margin_response(const GreyImage *soft, float level, const GreyImage *r, const Mask *m)
+/* In the band, where the level crosses the threshold. */
+static void read_margin(const Readings *r, const FangTile *t, const GreyImage *soft, const GreyImage *response)
 {
-    GArray *v = g_array_new(FALSE, FALSE, sizeof(float));
-    for (uint32_t y = 0; y < soft->height; y++)
-        for (uint32_t x = 0; x < soft->width; x++) {
-            const float *px = soft->px + (gsize)y * soft->width + x;
-            bool here = px[0] < level, crosses = (x + 1 < soft->width && (px[1] < level) != here) ||
-                                                 (y + 1 < soft->height && (px[soft->width] < level) != here);
-            if (!crosses || !(*mask_at(m, x, y) & MASK_WORK))
+    for (uint32_t y = t->core.y0; y <= t->core.y1; y++)
+        for (uint32_t x = t->core.x0; x <= t->core.x1; x++) {
+            if (!(*mask_at(r->m, x, y) & MASK_WORK))
                 continue;
-            float most = greatest_near(r, x, y);
-            g_array_append_val(v, most);
+            uint32_t i = x - t->all.x0, j = y - t->all.y0;
+            const float *px = soft->px + (gsize)j * soft->width + i;
+            bool here = px[0] < r->level, crosses = (i + 1 < soft->width && (px[1] < r->level) != here) ||
+                                                    (j + 1 < soft->height && (px[soft->width] < r->level) != here);
+            if (!crosses)
+                continue;
+            Reading most = {(gsize)y * r->grey->width + x, greatest_near(response, i, j)};
+            g_array_append_val(r->margin, most);
         }
-    double margin = quantile(v, 0.5);
-    g_array_free(v, TRUE);
-    return margin;
 }
 
-/* Thresholds for def->sigma. False, unless they are wanted `anyway`, when noise would pass them. */
-static bool set_thresholds(const GreyImage *grey, float level, const Mask *m, bool anyway, EdgesDef *def)
+static bool has_band(const Mask *m, const MaskBox *b)
 {
-    GreyImage *response = edges_response(grey, def->op, def->sigma, NULL), *soft = edges_smooth(grey, def->sigma, NULL);
-    double margin = margin_response(soft, level, response, m);
-    bool fine = anyway || LOW * margin > CLEAR * usual_response(response, def->op, m);
+    for (uint32_t y = b->y0; y <= b->y1; y++)
+        for (uint32_t x = b->x0; x <= b->x1; x++)
+            if (*mask_at(m, x, y) & MASK_WORK)
+                return true;
+    return false;
+}
+
+static void read_tile(const Readings *r, const FangTile *t, const EdgesDef *def)
+{
+    GreyImage *grey = fang_tile_grey(r->grey, t), *response = edges_response(grey, def->op, def->sigma, NULL);
+    g_assert(response);
+    read_ground(r, t, response);
+    if (has_band(r->m, &t->core)) {
+        GreyImage *soft = edges_smooth(grey, def->sigma, NULL);
+        read_margin(r, t, soft, response);
+        grey_image_free(soft);
+    }
+    grey_image_free(grey);
+    grey_image_free(response);
+}
+
+/* --- thresholds --- */
+
+/* Thresholds for def->sigma. False, unless they are wanted `anyway`, when noise would pass them. The Laplacian's and Canny's response is 0 but on lines, some
+ * tenth of the pixels where all is noise. */
+static bool set_thresholds(const FangGrey *grey, float level, const Mask *m, bool anyway, EdgesDef *def)
+{
+    Readings r = {grey, m, level, g_array_new(FALSE, FALSE, sizeof(Reading)), g_array_new(FALSE, FALSE, sizeof(Reading))};
+    uint32_t reach = edges_reach(def->op, def->sigma) + 1; /* and the neighbours of each pixel */
+    for (uint32_t k = 0; k < fang_tile_count(grey, reach); k++) {
+        FangTile t = fang_tile(grey, reach, k);
+        read_tile(&r, &t, def);
+    }
+    double usual = quantile_of(r.ground, lines_only(def->op) ? LINES : 0.5), margin = quantile_of(r.margin, 0.5);
+    bool fine = anyway || LOW * margin > CLEAR * usual;
     if (fine) {
         def->automatic = false;
         def->high = HIGH * margin;
         def->low = LOW * margin;
     }
-    grey_image_free(response);
-    grey_image_free(soft);
     return fine;
 }
 
@@ -100,7 +163,7 @@ static void mark_band(const Mask *m, double reach)
             *mask_at(m, x, y) &= *mask_at(m, x, y) & MASK_CORE ? (uint8_t)~MASK_WORK : 0xff;
 }
 
-bool fang_choose_edges(const GreyImage *grey, double level, const Mask *m, EdgesDef *def, GError **error)
+bool fang_choose_edges(const FangGrey *grey, double level, const Mask *m, EdgesDef *def, GError **error)
 {
     if (!def->automatic)
         return true;
@@ -110,10 +173,8 @@ bool fang_choose_edges(const GreyImage *grey, double level, const Mask *m, Edges
         k++;
     EdgesDef tried = *def;
     tried.sigma = given ? def->sigma : SIGMA[k];
-    GreyImage *checked = edges_response(grey, def->op, tried.sigma, error);
-    if (!checked)
+    if (!edges_check(&tried, error))
         return false;
-    grey_image_free(checked);
     mark_band(m, fang_band(tried.sigma));
     while (!set_thresholds(grey, (float)level, m, given || k == last, &tried))
         tried.sigma = SIGMA[++k];

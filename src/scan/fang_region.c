@@ -2,11 +2,15 @@
 
 #include <math.h>
 
+#include "scan/fang_map.h"
+
 #define BAND 4.0
 #define BAND_GROWS 2.0 /* pixels by pixel of sigma */
 #define NEAR 1.5       /* what an edge may be off the border, pixels */
 
 double fang_band(double sigma) { return BAND + BAND_GROWS * sigma; }
+
+EdgesOperator fang_broad(EdgesOperator op) { return op == EDGES_CANNY || op == EDGES_LAPLACIAN ? EDGES_SOBEL : op; }
 
 /* --- watershed --- */
 
@@ -19,7 +23,7 @@ typedef struct {
 
 typedef struct {
     const Mask *m;
-    const GreyImage *response, *map;
+    const FangSparse *response; /* in the band */
     double scale;           /* classes per unit of response */
     GArray *class[CLASSES]; /* Front */
     int lowest;
@@ -30,9 +34,8 @@ static const int8_t BESIDE[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
 /* By response, in the upper half of the classes on edges, in the lower half elsewhere. */
 static int class_of(const Basins *b, uint32_t x, uint32_t y)
 {
-    size_t i = (size_t)y * b->response->width + x;
-    int c = (int)((double)b->response->px[i] * b->scale);
-    return MIN(c, CLASSES / 2 - 1) + (b->map->px[i] > 0.0f ? CLASSES / 2 : 0);
+    int c = (int)((double)fang_sparse_at(b->response, x, y) * b->scale);
+    return MIN(c, CLASSES / 2 - 1) + (*mask_at(b->m, x, y) & MASK_SEEN ? CLASSES / 2 : 0);
 }
 
 /* Puts the neighbours of a pixel that belong to no side yet into the queue. */
@@ -60,7 +63,7 @@ static void flood_band(Basins *b)
             *px |= f.side;
             push_around(b, f.x, f.y, f.side);
         }
-        g_array_set_size(class, 0);
+        g_array_free(class, TRUE);
     }
 }
 
@@ -86,18 +89,23 @@ static void part_band(Basins *b, double most)
             if (*mask_at(m, x, y) & (MASK_OUT | MASK_CORE))
                 push_around(b, x, y, *mask_at(m, x, y) & (MASK_OUT | MASK_CORE));
     flood_band(b);
-    for (int k = 0; k < CLASSES; k++)
-        g_array_free(b->class[k], TRUE);
 }
 
-static double most_in_band(const Mask *m, const GreyImage *response)
+/* The response in the band. */
+static FangSparse *respond(const FangGrey *grey, const EdgesDef *used, const Mask *m, double *most)
 {
-    double most = 0.0;
+    FangSparse *r = fang_sparse_new(grey->width, grey->height);
     for (uint32_t y = 0; y < m->height; y++)
         for (uint32_t x = 0; x < m->width; x++)
             if (!(*mask_at(m, x, y) & (MASK_CORE | MASK_OUT)))
-                most = MAX(most, (double)response->px[(size_t)y * response->width + x]);
-    return most;
+                fang_sparse_want(r, x, y);
+    fang_sparse_respond(r, grey, fang_broad(used->op), used->sigma);
+    *most = 0.0;
+    for (uint32_t y = 0; y < m->height; y++)
+        for (uint32_t x = 0; x < m->width; x++)
+            if (!(*mask_at(m, x, y) & (MASK_CORE | MASK_OUT)))
+                *most = MAX(*most, (double)fang_sparse_at(r, x, y));
+    return r;
 }
 
 /* --- how well they agree --- */
@@ -114,13 +122,10 @@ static bool is_margin(const Mask *m, uint32_t x, uint32_t y)
     return false;
 }
 
-static void measure(const Mask *m, const GreyImage *map, FangMatch *fit)
+static void measure(const Mask *m, FangMatch *fit)
 {
     static const Flood gap = {MASK_WORK | MASK_HOLE, MASK_WORK, MASK_HOLE, true};
     uint64_t margin = 0, bare = 0, longest = 0;
-    for (uint32_t y = 0; y < m->height; y++)
-        for (uint32_t x = 0; x < m->width; x++)
-            *mask_at(m, x, y) |= map->px[(size_t)y * map->width + x] > 0.0f ? MASK_SEEN : 0;
     mask_dilate(m, MASK_SEEN, MASK_SEEN, NEAR);
     for (uint32_t y = 0; y < m->height; y++)
         for (uint32_t x = 0; x < m->width; x++) {
@@ -141,30 +146,34 @@ static void measure(const Mask *m, const GreyImage *map, FangMatch *fit)
 
 /* --- together --- */
 
-/* Leaves `which` as MASK_LEAF and no other bit; returns how many pixels. */
-static double keep(const Mask *m, uint8_t which)
+/* Leaves `which` as MASK_LEAF and besides it the bits `others`; returns how many pixels. */
+static double keep(const Mask *m, uint8_t which, uint8_t others)
 {
     uint64_t n = 0;
     for (uint32_t y = 0; y < m->height; y++)
         for (uint32_t x = 0; x < m->width; x++) {
             uint8_t *px = mask_at(m, x, y);
-            *px = *px & which ? MASK_LEAF : 0;
-            n += *px != 0;
+            bool in = (*px & which) != 0;
+            *px = (uint8_t)((in ? MASK_LEAF : 0) | (*px & others));
+            n += in;
         }
     return (double)n;
 }
 
-FangMatch fang_region(const GreyImage *response, const GreyImage *map, double sigma, const Mask *m)
+FangMatch fang_region(const FangGrey *grey, const EdgesDef *used, const Mask *m)
 {
-    FangMatch fit = {.rough = keep(m, MASK_LEAF)};
-    mark_sides(m, fang_band(sigma));
-    double most = most_in_band(m, response);
+    FangMatch fit = {.rough = keep(m, MASK_LEAF, 0)};
+    double most;
+    fang_mark_edges(grey, used, m);
+    mark_sides(m, fang_band(used->sigma));
+    FangSparse *response = respond(grey, used, m, &most);
     if (most > 0.0) {
-        Basins b = {.m = m, .response = response, .map = map};
+        Basins b = {.m = m, .response = response};
         part_band(&b, most);
     }
-    fit.area = keep(m, most > 0.0 ? MASK_CORE : MASK_LEAF);
-    measure(m, map, &fit);
-    keep(m, MASK_LEAF);
+    fang_sparse_free(response);
+    fit.area = keep(m, most > 0.0 ? MASK_CORE : MASK_LEAF, MASK_SEEN);
+    measure(m, &fit);
+    keep(m, MASK_LEAF, 0);
     return fit;
 }

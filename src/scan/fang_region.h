@@ -2,8 +2,7 @@
 #ifndef SCAN_FANG_REGION_H
 #define SCAN_FANG_REGION_H
 
-#include "scan/edges.h"
-#include "scan/mask.h"
+#include "scan/fang_tiles.h"
 
 /* How well edges and rough region agree. */
 typedef struct {
@@ -17,11 +16,14 @@ typedef struct {
 double fang_band(double sigma);
 
 /* Moves the border of the region marked by MASK_LEAF to the edges within fang_band of it: the band is flooded from both sides, lowest
- * response first, edges (`map`) last and the weaker of them first (watershed, Meyer 1991). So the border runs along the strongest of
+ * response first, edges last and the weaker of them first (watershed, Meyer 1991). So the border runs along the strongest of
  * the edges that part inside from outside, and where they have gaps, along the strongest response there. Veins and lines that end in the band
  * part nothing; those outside it do not count. Neither a wide edge nor a soft shadow beside the margin moves the border.
- * `response` is one that is not just lines. Images are of the mask's size. The mask has no other bits, before and after. Where the
- * response is nothing all over, the region stays as it is. O(pixels), and 16 bytes for each in the band. */
-FangMatch fang_region(const GreyImage *response, const GreyImage *map, double sigma, const Mask *m);
+ * `used` are an operator and thresholds that edges_check takes, none of them automatic; the mask is of the image's size and has no other bits, before and
+ * after. Where the response is nothing all over, the region stays as it is. O(pixels), and 16 bytes for each in the band. */
+FangMatch fang_region(const FangGrey *grey, const EdgesDef *used, const Mask *m);
+
+/* The operator whose response tells how far a place is from an edge, too: Sobel's for those that respond on lines only. */
+EdgesOperator fang_broad(EdgesOperator op);
 
 #endif
