@@ -748,6 +748,7 @@ def test_capture_ways():
     write("blade.txt", "60 180\n85 140\n90 90\n60 20\n30 90\n35 140\n")
     done = run("capture", "leaf.png", *CAPTURE, "--maps", "none", "--set", "outline.file=blade.txt", "--json", "-o", "traced")
     same(done.status, 0)
+    same(json.loads(done.out)["scan"]["outline_from"], "drawing")
     write("eight.txt", "60 180\n90 90\n60 20\n100 170\n")
     refused = run("capture", "leaf.png", "--set", "outline.file=eight.txt")
     same((refused.status, "crosses or touches itself near" in refused.err), (3, True))
