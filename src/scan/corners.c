@@ -29,7 +29,7 @@ static bool check_range(const char *name, double value, double least, double mos
            fail(error, CORNERS_ERROR_SETTINGS, "the corners' %s is %g; it must lie between %g and %g", name, value, least, most);
 }
 
-static bool check_def(const CornersDef *def, GError **error)
+bool corners_check(const CornersDef *def, GError **error)
 {
     return check_range("smoothing", def->smoothing, 0.0, LARGEST, error) && check_range("window", def->window, 0.5, LARGEST, error) &&
            check_range("k", def->k, 0.0, 0.25, error) && check_range("threshold", def->threshold, 0.0, 1.0, error) &&
@@ -50,17 +50,20 @@ static bool check_contour(const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip
 
 /* --- response --- */
 
-/* The image with its grey range from 0 to 1; 0 if it has none. */
-static GreyImage *normalised(const GreyImage *in)
+static void grey_range(const GreyImage *in, double *least, double *most)
 {
-    gsize n = (gsize)in->width * in->height;
-    double least = (double)in->px[0], most = least;
-    for (gsize i = 1; i < n; i++) {
-        least = MIN(least, (double)in->px[i]);
-        most = MAX(most, (double)in->px[i]);
+    *least = *most = (double)in->px[0];
+    for (gsize i = 1; i < (gsize)in->width * in->height; i++) {
+        *least = MIN(*least, (double)in->px[i]);
+        *most = MAX(*most, (double)in->px[i]);
     }
+}
+
+/* The image with that grey range from 0 to 1; 0 if it has none. */
+static GreyImage *normalised(const GreyImage *in, double least, double most)
+{
     GreyImage *out = grey_image_new(in->width, in->height);
-    for (gsize i = 0; i < n && most > least; i++)
+    for (gsize i = 0; i < (gsize)in->width * in->height && most > least; i++)
         out->px[i] = (float)(((double)in->px[i] - least) / (most - least));
     return out;
 }
@@ -77,24 +80,38 @@ static GreyImage *windowed(const GreyImage *a, const GreyImage *b, double sigma)
     return out;
 }
 
-GreyImage *corners_response(const GreyImage *in, const CornersDef *def, GError **error)
+static GreyImage *respond(const GreyImage *in, double least, double most, const CornersDef *def)
 {
-    if (!check_def(def, error))
-        return NULL;
-    GreyImage *known = edges_smooth(in, 0.0, error); /* for its checks */
-    if (!known)
-        return NULL;
-    GreyImage *unit = normalised(known), *soft = edges_smooth(unit, def->smoothing, NULL), *gx, *gy;
+    GreyImage *unit = normalised(in, least, most), *soft = edges_smooth(unit, def->smoothing, NULL), *gx, *gy;
+    grey_image_free(unit);
     edges_gradient(soft, EDGES_SOBEL, &gx, &gy);
+    grey_image_free(soft);
     GreyImage *xx = windowed(gx, gx, def->window), *xy = windowed(gx, gy, def->window), *yy = windowed(gy, gy, def->window);
     for (gsize i = 0; i < (gsize)in->width * in->height; i++) {
         double a = (double)xx->px[i], b = (double)xy->px[i], c = (double)yy->px[i];
         xx->px[i] = (float)(a * c - b * b - def->k * (a + c) * (a + c));
     }
-    GreyImage *const spent[] = {known, unit, soft, gx, gy, xy, yy};
+    GreyImage *const spent[] = {gx, gy, xy, yy};
     for (uint32_t i = 0; i < G_N_ELEMENTS(spent); i++)
         grey_image_free(spent[i]);
     return xx;
+}
+
+GreyImage *corners_response_in(const GreyImage *part, double least, double most, const CornersDef *def, GError **error)
+{
+    if (!corners_check(def, error))
+        return NULL;
+    GreyImage *known = edges_smooth(part, 0.0, error), *out = known ? respond(part, least, most, def) : NULL; /* for its checks */
+    grey_image_free(known);
+    return out;
+}
+
+GreyImage *corners_response(const GreyImage *in, const CornersDef *def, GError **error)
+{
+    double least = 0.0, most = 0.0;
+    if (in->width > 0 && in->height > 0)
+        grey_range(in, &least, &most);
+    return corners_response_in(in, least, most, def, error);
 }
 
 /* --- on the contour --- */
@@ -116,14 +133,14 @@ static double way(const Contour *c, uint32_t i, uint32_t j)
     return MIN(d, c->along[c->n] - d);
 }
 
-static double pixel(const GreyImage *g, double x, double y)
+static double pixel(const CornersField *f, double x, double y)
 {
-    double i = CLAMP(x, 0.0, (double)(g->width - 1)), j = CLAMP(y, 0.0, (double)(g->height - 1));
-    return (double)g->px[(gsize)j * g->width + (gsize)i];
+    double i = CLAMP(x, 0.0, (double)(f->width - 1)), j = CLAMP(y, 0.0, (double)(f->height - 1));
+    return (double)f->read(f->user, (uint32_t)i, (uint32_t)j);
 }
 
 /* Bilinear between the middles of pixels. */
-static double read_between(const GreyImage *g, Vec2 p)
+static double read_between(const CornersField *g, Vec2 p)
 {
     double x = floor(p.x - 0.5), y = floor(p.y - 0.5), fx = p.x - 0.5 - x, fy = p.y - 0.5 - y;
     double above = pixel(g, x, y) * (1.0 - fx) + pixel(g, x + 1.0, y) * fx;
@@ -152,7 +169,7 @@ static Vec2 middle(const Contour *c, uint32_t i, double reach)
     return vec_scale(sum, 1.0 / count);
 }
 
-static Contour contour_new(const Vec2 *v, uint32_t n, const GreyImage *response, double reach)
+static Contour contour_new(const Vec2 *v, uint32_t n, const CornersField *response, double reach)
 {
     Contour c = {v, n, g_new(double, (gsize)n + 1), g_new(double, n)};
     c.along[0] = 0.0;
@@ -226,8 +243,7 @@ static bool has_room(const Contour *c, const GArray *kept, uint32_t at, double s
     return true;
 }
 
-/* Lengths for a contour of that extent. */
-static CornersDef scaled(const CornersDef *def, const Vec2 *v, uint32_t n)
+CornersDef corners_scaled(const CornersDef *def, const Vec2 *v, uint32_t n)
 {
     Box2 box = box_empty();
     for (uint32_t i = 0; i < n; i++)
@@ -237,16 +253,13 @@ static CornersDef scaled(const CornersDef *def, const Vec2 *v, uint32_t n)
     out.smoothing = MIN(by * def->smoothing, LARGEST);
     out.window = MIN(by * def->window, LARGEST);
     out.spacing = by * def->spacing;
+    out.size = 0.0;
     return out;
 }
 
-GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *given, GError **error)
+GArray *corners_choose(const CornersField *response, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *def, GError **error)
 {
-    if (!check_contour(v, n, base, tip, error) || !check_def(given, error))
-        return NULL;
-    CornersDef used = scaled(given, v, n), *def = &used;
-    GreyImage *response = corners_response(in, def, error);
-    if (!response)
+    if (!check_contour(v, n, base, tip, error) || !corners_check(def, error))
         return NULL;
     Contour c = contour_new(v, n, response, def->window);
     GArray *found = candidates(&c, def), *kept = g_array_new(FALSE, FALSE, sizeof(Corner));
@@ -261,6 +274,25 @@ GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t ba
     g_array_sort(kept, by_place);
     g_array_unref(found);
     contour_clear(&c);
+    return kept;
+}
+
+static float read_image(const void *user, uint32_t x, uint32_t y)
+{
+    const GreyImage *g = user;
+    return g->px[(gsize)y * g->width + x];
+}
+
+GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *def, GError **error)
+{
+    if (!check_contour(v, n, base, tip, error) || !corners_check(def, error))
+        return NULL;
+    CornersDef used = corners_scaled(def, v, n);
+    GreyImage *response = corners_response(in, &used, error);
+    if (!response)
+        return NULL;
+    CornersField field = {in->width, in->height, read_image, response};
+    GArray *kept = corners_choose(&field, v, n, base, tip, &used, error);
     grey_image_free(response);
     return kept;
 }

@@ -27,10 +27,20 @@ typedef enum {
 #define CORNERS_ERROR corners_error_quark()
 GQuark corners_error_quark(void);
 
+/* Whether they can be used; false and CORNERS_ERROR_SETTINGS where not. */
+bool corners_check(const CornersDef *def, GError **error);
+
+/* The same with lengths for the extent of that contour, and size 0. */
+CornersDef corners_scaled(const CornersDef *def, const Vec2 *v, uint32_t n);
+
 /* det M - k trace² M at every pixel, M the windowed sum of products of Sobel derivatives of the image, whose grey range counts as 1:
  * positive at corners, negative on straight edges, 0 on plain ground; pixels⁻⁴. EDGES_ERROR for an unusable image. O(pixels · (smoothing +
  * window)). */
 GreyImage *corners_response(const GreyImage *in, const CornersDef *def, GError **error);
+
+/* The same of a part of an image whose grey values lie between `least` and `most`: what is 4 (smoothing + window) + 3 or more pixels within it responds as in
+ * the whole. */
+GreyImage *corners_response_in(const GreyImage *part, double least, double most, const CornersDef *def, GError **error);
 
 typedef struct {
     uint32_t at;     /* vertex of the contour */
@@ -45,5 +55,15 @@ typedef struct {
  * the chord of that stretch: the corner itself where two straight sides meet. Stronger ones (of equals the first) keep weaker ones nearer
  * than `spacing` away. Returns Corner in the order of the contour. */
 GArray *corners_find(const GreyImage *in, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *def, GError **error);
+
+/* The response in an image of that size; no others than its pixels are asked for. */
+typedef struct {
+    uint32_t width, height;
+    float (*read)(const void *user, uint32_t x, uint32_t y);
+    const void *user;
+} CornersField;
+
+/* The same by a response that is known within `window` + 2 of the contour, for corners_scaled settings. */
+GArray *corners_choose(const CornersField *response, const Vec2 *v, uint32_t n, uint32_t base, uint32_t tip, const CornersDef *def, GError **error);
 
 #endif

@@ -34,17 +34,6 @@ void fang_profile_free(FangProfile *p)
     g_free(p);
 }
 
-/* Part of a channel in grey values 0 … 255. */
-static GreyImage *grey_part(const Scan *s, Channel channel, MaskBox b)
-{
-    GreyImage *g = grey_image_new(b.x1 - b.x0 + 1, b.y1 - b.y0 + 1);
-    double scale = s->depth == 8 ? 1.0 : 1.0 / 257.0;
-    for (uint32_t y = 0; y < g->height; y++)
-        for (uint32_t x = 0; x < g->width; x++)
-            g->px[(gsize)y * g->width + x] = (float)(channel_value(s, channel, b.x0 + x, b.y0 + y) * scale);
-    return g;
-}
-
 /* The pixels around a polygon and some more. */
 static MaskBox around(const Scan *s, Box2 b, double margin)
 {
@@ -134,17 +123,49 @@ static void find_contour(const Scan *s, FangProfile *out)
     fang_sparse_free(response);
 }
 
+/* Corners of a part of a scan whose grey range is known. */
+typedef struct {
+    const CornersDef *def;
+    double least, most;
+} Harris;
+
+static GreyImage *harris(const GreyImage *in, const void *user)
+{
+    const Harris *h = user;
+    GreyImage *out = corners_response_in(in, h->least, h->most, h->def, NULL);
+    g_assert(out);
+    return out;
+}
+
+static float read_sparse(const void *user, uint32_t x, uint32_t y) { return fang_sparse_at(user, x, y); }
+
+static GArray *corners_near(const FangGrey *grey, const Vec2 *v, uint32_t n, const FangProfile *p, const CornersDef *given, GError **error)
+{
+    CornersDef used = corners_scaled(given, v, n), *def = &used;
+    FangSparse *response = fang_sparse_new(grey->width, grey->height);
+    for (uint32_t i = 0; i < n; i++)
+        fang_sparse_want_around(response, v[i].x, v[i].y, def->window + 2.0);
+    Harris h = {.def = def};
+    fang_grey_range(grey, &h.least, &h.most);
+    fang_sparse_fill(response, grey, (uint32_t)ceil(4.0 * (def->smoothing + def->window)) + 3, harris, &h);
+    CornersField field = {grey->width, grey->height, read_sparse, response};
+    GArray *found = corners_choose(&field, v, n, p->base, p->tip, def, error);
+    fang_sparse_free(response);
+    return found;
+}
+
 static bool find_corners(const Scan *s, const FangDef *def, FangProfile *out, GError **error)
 {
+    if (!corners_check(&def->corners, error))
+        return false;
     MaskBox box = around(s, out->contour->box, MARGIN + 4.0 * (def->corners.smoothing + def->corners.window));
-    GreyImage *grey = grey_part(s, out->threshold.channel, box);
+    FangGrey grey = fang_grey(s, out->threshold.channel, box);
     uint32_t n = out->contour->n;
     Vec2 *down = g_new(Vec2, n);
     for (uint32_t i = 0; i < n; i++)
         down[i] = vec2(out->contour->v[i].x - box.x0, s->height - out->contour->v[i].y - box.y0);
-    out->corners = corners_find(grey, down, n, out->base, out->tip, &def->corners, error);
+    out->corners = corners_near(&grey, down, n, out, &def->corners, error);
     g_free(down);
-    grey_image_free(grey);
     return out->corners != NULL;
 }
 
@@ -169,11 +190,6 @@ static bool capture(const Scan *s, const Mask *m, const FangDef *def, FangProfil
 
 FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error)
 {
-    if ((uint64_t)s->width * s->height > FANG_MAX_PIXELS) {
-        g_set_error(error, SCAN_ERROR, SCAN_ERROR_SIZE, "%u × %u pixels: profiles by edges are captured from up to %u", s->width, s->height,
-                    (guint)FANG_MAX_PIXELS);
-        return NULL;
-    }
     Threshold t;
     if (!threshold_find(s, &def->threshold, &t, error))
         return NULL;

@@ -42,17 +42,14 @@ typedef struct {
     double mm_per_pixel;
 } FangProfile;
 
-/* Pixels of a scan that fang_capture takes. Besides the scan it holds a byte a pixel of it, and 40 a pixel of the leaf's box while corners are looked for. */
-#define FANG_MAX_PIXELS ((uint64_t)1 << 27)
-
 /* One leaf of a scan. The paper takes the operator's edges as the contour, from pictures where these are closed and nothing else is
  * there. On scans they have gaps, and veins, grids and shadows are edges too. So here the level says about where the leaf is, and the
  * edges within a band around that region's border say where its contour runs (scan/fang_region.h); it is then drawn in to the middle of
  * the edges. When the fit crosses itself (deep teeth, few points) pieces are parted until it doesn't; that always ends, at the contour
  * itself.
  * NULL and SCAN_ERROR_NO_LEAF when there is no leaf, there are edges along less than half of its margin, or they enclose more than
- * 2 % more or less than is leaf by its level; SCAN_ERROR_SIZE beyond FANG_MAX_PIXELS; SCAN_ERROR_VALUE, EDGES_ERROR, CORNERS_ERROR or BEZIERFIT_ERROR
- * for settings that can't be used. */
+ * 2 % more or less than is leaf by its level; SCAN_ERROR_SIZE when there is no memory; SCAN_ERROR_VALUE, EDGES_ERROR, CORNERS_ERROR or BEZIERFIT_ERROR
+ * for settings that can't be used. Holds one byte a pixel besides the scan, some more along outlines, and some megabytes (scan/fang_tiles.h). */
 FangProfile *fang_capture(const Scan *s, const FangDef *def, GError **error);
 void fang_profile_free(FangProfile *p);
 

@@ -5,9 +5,24 @@
 /* Side of a tile's core, pixels: what is looked at twice, around it, stays below a fifth for small reaches, and below one and a quarter for any. */
 enum { SIDE = 512, REACHES = 4 };
 
+static float grey_of(const Scan *s, uint32_t value) { return (float)(value * (s->depth == 8 ? 1.0 : 1.0 / 257.0)); }
+
 FangGrey fang_grey(const Scan *s, Channel channel, MaskBox box)
 {
     return (FangGrey){s, channel, box, box.x1 - box.x0 + 1, box.y1 - box.y0 + 1};
+}
+
+void fang_grey_range(const FangGrey *g, double *least, double *most)
+{
+    uint32_t low = UINT32_MAX, high = 0;
+    for (uint32_t y = g->box.y0; y <= g->box.y1; y++)
+        for (uint32_t x = g->box.x0; x <= g->box.x1; x++) {
+            uint32_t v = channel_value(g->scan, g->channel, x, y);
+            low = MIN(low, v);
+            high = MAX(high, v);
+        }
+    *least = (double)grey_of(g->scan, low);
+    *most = (double)grey_of(g->scan, high);
 }
 
 /* Of whole blocks, so that no block lies in two tiles. */
@@ -32,11 +47,10 @@ FangTile fang_tile(const FangGrey *g, uint32_t reach, uint32_t k)
 GreyImage *fang_tile_grey(const FangGrey *g, const FangTile *t)
 {
     GreyImage *out = grey_image_new(t->all.x1 - t->all.x0 + 1, t->all.y1 - t->all.y0 + 1);
-    double scale = g->scan->depth == 8 ? 1.0 : 1.0 / 257.0;
     uint32_t x0 = g->box.x0 + t->all.x0, y0 = g->box.y0 + t->all.y0;
     for (uint32_t y = 0; y < out->height; y++)
         for (uint32_t x = 0; x < out->width; x++)
-            out->px[(gsize)y * out->width + x] = (float)(channel_value(g->scan, g->channel, x0 + x, y0 + y) * scale);
+            out->px[(gsize)y * out->width + x] = grey_of(g->scan, channel_value(g->scan, g->channel, x0 + x, y0 + y));
     return out;
 }
 

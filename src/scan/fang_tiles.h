@@ -17,6 +17,9 @@ typedef struct {
 
 FangGrey fang_grey(const Scan *s, Channel channel, MaskBox box);
 
+/* Its least and greatest value. */
+void fang_grey_range(const FangGrey *g, double *least, double *most);
+
 /* Tiles side by side, row after row; a filter that looks no farther than `reach` pixels gives in `core` what it would give on the whole. */
 typedef struct {
     MaskBox core, all; /* all: with what is within reach around it */

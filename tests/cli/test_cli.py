@@ -830,7 +830,7 @@ def test_capture_memory():
         between = "import os, sys; _, s, u = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ), 0); print(u.ru_maxrss); sys.exit(s != 0)"
         return 1024 * int(subprocess.run([sys.executable, "-ISc", between, VENATION, *args], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True).stdout)
     plain = ("--set", "scan.veins=none")
-    ways = (plain, (), ("--each", *plain), ("--each", "--back", "flat.png", *plain))
+    ways = (plain, (), ("--method", "fang", *plain), ("--each", *plain), ("--each", "--back", "flat.png", *plain))
     for channels in (1, 3):
         used, sizes = [], (1400, 2600)
         for size in sizes:

@@ -151,6 +151,65 @@ static void test_map(void)
         }
 }
 
+/* --- corners --- */
+
+typedef struct {
+    CornersDef def;
+    double least, most;
+} Harris;
+
+static GreyImage *harris(const GreyImage *in, const void *user)
+{
+    const Harris *h = user;
+    return corners_response_in(in, h->least, h->most, &h->def, NULL);
+}
+
+static float read_sparse(const void *user, uint32_t x, uint32_t y) { return fang_sparse_at(user, x, y); }
+
+/* Along a wavy line around the middle, read from no more than is wanted near it. */
+static void test_corners(void)
+{
+    enum { N = 2000 };
+    Scan *s = weave(1060, 570, 3, 16);
+    FangGrey g = fang_grey(s, CHANNEL_RED, (MaskBox){7, 3, 1057, 566});
+    GreyImage *in = whole(&g);
+    Vec2 v[N];
+    for (uint32_t i = 0; i < N; i++) {
+        double a = 2.0 * G_PI * i / N, r = 1.0 + 0.1 * sin(9.0 * a);
+        v[i] = vec2(520.0 + 440.0 * r * cos(a), 280.0 + 230.0 * r * sin(a));
+    }
+    for (int k = 0; k < 2; k++) {
+        CornersDef def = corners_def_default();
+        def.size = k ? 300.0 : 0.0;
+        Harris h = {.def = corners_scaled(&def, v, N)};
+        fang_grey_range(&g, &h.least, &h.most);
+        FangSparse *near = fang_sparse_new(g.width, g.height), *all = fang_sparse_new(g.width, g.height);
+        uint32_t reach = (uint32_t)ceil(4.0 * (h.def.smoothing + h.def.window)) + 3;
+        for (uint32_t i = 0; i < N; i++)
+            fang_sparse_want_around(near, v[i].x, v[i].y, h.def.window + 2.0);
+        want_all(all);
+        fang_sparse_fill(near, &g, reach, harris, &h);
+        fang_sparse_fill(all, &g, reach, harris, &h);
+        GreyImage *response = corners_response(in, &h.def, NULL);
+        check_same(all, response);
+        CornersField field = {g.width, g.height, read_sparse, near};
+        GArray *got = corners_choose(&field, v, N, 0, N / 2, &h.def, NULL), *want = corners_find(in, v, N, 0, N / 2, &def, NULL);
+        g_assert_cmpuint(want->len, >, 10);
+        g_assert_cmpuint(got->len, ==, want->len);
+        for (guint i = 0; i < want->len; i++) {
+            Corner a = g_array_index(got, Corner, i), b = g_array_index(want, Corner, i);
+            g_assert_true(a.at == b.at && a.response == b.response);
+        }
+        g_array_unref(got);
+        g_array_unref(want);
+        grey_image_free(response);
+        fang_sparse_free(near);
+        fang_sparse_free(all);
+    }
+    grey_image_free(in);
+    scan_free(s);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -158,5 +217,6 @@ int main(int argc, char **argv)
     g_test_add_func("/fang_tiles/wanted", test_wanted);
     g_test_add_func("/fang_tiles/responses", test_responses);
     g_test_add_func("/fang_tiles/map", test_map);
+    g_test_add_func("/fang_tiles/corners", test_corners);
     return g_test_run();
 }
