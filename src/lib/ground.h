@@ -41,6 +41,9 @@ void ground_scan_free(GroundScan *sheet);
 /* The same as ground_new for parameters that differ from the sheet's in scan.leaf alone, but each leaf only once without a new search. */
 Ground *ground_new_on(GroundScan *sheet, const Params *p, bool veins, GError **error);
 Ground *ground_ref(Ground *g);
+
+/* Veins by [lsystem] in the outline, of `length` segments; what a person should know of them is noted. */
+Network *ground_lsystem(Ground *g, const Params *p, double length, uint64_t seed, GError **error);
 void ground_unref(Ground *g);
 
 #endif

@@ -1,7 +1,11 @@
-/* Veins that were drawn over the scan, or are looked for in it. */
+/* Veins that were drawn over the scan, are looked for in it, or written by an L-system. */
+#include <string.h>
+
 #include "import/drawing_file.h"
 #include "lib/ground_private.h"
 #include "scan/found.h"
+#include "sim/bare.h"
+#include "sim/lobes.h"
 
 /* ---- drawn ---- */
 
@@ -14,8 +18,10 @@ static gboolean read_drawing(Ground *g, const Params *p, GError **error)
     bool svg = is_svg(file);
     SvgPlace place = {0};
     if (!svg && !g->scan) {
+        char *place = params_place(p, PARAM_VEINS_DRAWING);
         g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
-                    "%s: a text file of lines is in pixels of a scan, so [veins] drawing needs scan.file too", params_origin(p, PARAM_VEINS_DRAWING));
+                    "%s: a text file of lines is in pixels of a scan, so scan.file is needed, too", place);
+        g_free(place);
         return FALSE;
     }
     bool placed = svg && g->scan && ground_place(g, p, file, &place);
@@ -73,4 +79,78 @@ gboolean ground_find_veins(Ground *g, const Params *p, GError **error)
     if (*params_text(p, PARAM_VEINS_DRAWING))
         return read_drawing(g, p, error);
     return !g->scan || params_choice(p, PARAM_SCAN_VEINS) != 0 || look_for_veins(g, p, error);
+}
+
+/* ---- by an L-system ---- */
+
+enum { PRESET_AUTO, PRESET_PINNATE, PRESET_PALMATE };
+
+/* Discs of the blade without a vein, parts of its width. A person is told of one that is larger than the first, unless it is only so large because
+ * the blade is narrow: smaller than the second, of its length. Above the third the other preset is tried, and taken if it makes the disc so much
+ * smaller. */
+static const double most_bare = 0.25, least_bare = 0.125, much_bare = 0.2, better_by = 0.75;
+
+static Network *draw_lsystem(const Ground *g, const Params *p, bool palmate, double length, uint64_t seed, GError **error)
+{
+    LSystemDef def = settings_lsystem(p, palmate, seed);
+    Network *net = lsystem_network(&def, g->outline, length, NULL, error);
+    if (!net)
+        g_prefix_error(error, "[lsystem]: ");
+    settings_lsystem_clear(p, &def);
+    return net;
+}
+
+static bool has_lobes(const Polygon *outline)
+{
+    Lobes lobes;
+    lobes_find(outline, &lobes);
+    return lobes.found > 0;
+}
+
+/* Whether the other preset leaves much less of the blade bare; then the network is its own. */
+static bool draw_other(const Ground *g, const Params *p, bool palmate, uint64_t seed, Network **net, double *bare, Vec2 *centre)
+{
+    Vec2 at;
+    Network *other = draw_lsystem(g, p, palmate, (*net)->length, seed, NULL);
+    double share = other ? bare_disc(other, &at) : HUGE_VAL;
+    bool better = share < better_by * *bare;
+    if (better) {
+        Network *old = *net;
+        *net = other;
+        other = old;
+        *bare = share;
+        *centre = at;
+    }
+    network_free(other);
+    return better;
+}
+
+static void note_bare(Ground *g, const Params *p, double bare, Vec2 at, bool palmate)
+{
+    static const char *const name[] = {"pinnate", "palmate"};
+    bool chosen = params_choice(p, PARAM_LSYSTEM_PRESET) == PRESET_AUTO;
+    char *note = g_strdup_printf("the L-system's veins (lsystem.preset %s%s) leave a disc of %.0f %% of the blade's width bare, around %.2f, %.2f in leaf "
+                                 "lengths from the base; %s%s, lsystem.axiom and lsystem.productions, or veins.origin = grown fill it\n",
+                                 name[palmate], chosen ? ", by itself" : "", 100.0 * bare, at.x, at.y,
+                                 chosen ? "more lsystem.margin_veins" : "lsystem.preset = ", chosen ? "" : name[!palmate]);
+    if (!strstr(g->note->str, note)) /* the frames of a run share their ground */
+        g_string_append(g->note, note);
+    g_free(note);
+}
+
+Network *ground_lsystem(Ground *g, const Params *p, double length, uint64_t seed, GError **error)
+{
+    int preset = params_choice(p, PARAM_LSYSTEM_PRESET);
+    bool own = settings_lsystem_is_own(p), palmate = preset == PRESET_PALMATE || (preset == PRESET_AUTO && !own && has_lobes(g->outline));
+    Network *net = draw_lsystem(g, p, palmate, length, seed, error);
+    Vec2 centre;
+    if (!net || own)
+        return net;
+    net->length = length;
+    double bare = bare_disc(net, &centre);
+    if (bare > much_bare && preset == PRESET_AUTO && draw_other(g, p, !palmate, seed, &net, &bare, &centre))
+        palmate = !palmate;
+    if (bare > most_bare && bare * (net->margin->box.x1 - net->margin->box.x0) > least_bare * length)
+        note_bare(g, p, bare, vec_scale(centre, 1.0 / length), palmate);
+    return net;
 }

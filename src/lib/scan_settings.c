@@ -103,10 +103,16 @@ static char **productions(const char *text, uint32_t *n)
     return all;
 }
 
-LSystemDef settings_lsystem(const Params *p, uint64_t seed)
+bool settings_lsystem_is_own(const Params *p)
+{
+    return params_is_given(p, PARAM_LSYSTEM_AXIOM) || params_is_given(p, PARAM_LSYSTEM_PRODUCTIONS) ||
+           params_integer(p, PARAM_LSYSTEM_MARGIN_VEINS) == 0;
+}
+
+LSystemDef settings_lsystem(const Params *p, bool palmate, uint64_t seed)
 {
     uint32_t margin_veins = (uint32_t)params_integer(p, PARAM_LSYSTEM_MARGIN_VEINS);
-    LSystemDef d = lsystem_def_pinnate(margin_veins);
+    LSystemDef d = palmate ? lsystem_def_palmate(margin_veins) : lsystem_def_pinnate(margin_veins);
     bool own = params_is_given(p, PARAM_LSYSTEM_AXIOM) || margin_veins == 0;
     if (own) {
         d.axiom = params_text(p, PARAM_LSYSTEM_AXIOM);
@@ -132,8 +138,7 @@ LSystemDef settings_lsystem(const Params *p, uint64_t seed)
 
 void settings_lsystem_clear(const Params *p, LSystemDef *d)
 {
-    LSystemDef builtin = lsystem_def_pinnate((uint32_t)params_integer(p, PARAM_LSYSTEM_MARGIN_VEINS));
-    if (d->production != builtin.production)
+    if (settings_lsystem_is_own(p))
         g_strfreev((char **)d->production);
     d->production = NULL;
 }

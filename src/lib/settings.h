@@ -32,8 +32,9 @@ ProfileDef settings_profile(const Params *p, uint32_t height);
 bool settings_fang(const Params *p, uint32_t height, FangDef *out, GError **error);
 FoundDef settings_found(const Params *p);
 
-/* [lsystem]; free with settings_lsystem_clear. */
-LSystemDef settings_lsystem(const Params *p, uint64_t seed);
+/* [lsystem], what is not given by the palmate or the pinnate leaf; free with settings_lsystem_clear. */
+LSystemDef settings_lsystem(const Params *p, bool palmate, uint64_t seed);
+bool settings_lsystem_is_own(const Params *p); /* axiom or productions are given */
 void settings_lsystem_clear(const Params *p, LSystemDef *def);
 
 /* The simulation that the parameters ask for, on outline `leaf`, which must outlive it. Free with settings_simulation_clear. */

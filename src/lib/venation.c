@@ -215,16 +215,6 @@ static gboolean drawn_network(const Params *p, const Ground *g, double length, N
     return *net != NULL;
 }
 
-static Network *lsystem_veins(const Params *p, const Ground *g, double length, uint64_t seed, GError **error)
-{
-    LSystemDef def = settings_lsystem(p, seed);
-    Network *net = lsystem_network(&def, g->outline, length, NULL, error);
-    if (!net)
-        g_prefix_error(error, "[lsystem]: ");
-    settings_lsystem_clear(p, &def);
-    return net;
-}
-
 /* ---- the way to a leaf ---- */
 
 static VenLeaf *grow_in(const Params *p, Ground *ground, SimulationDef *def, const VenOptions *options, GError **error)
@@ -235,7 +225,7 @@ static VenLeaf *grow_in(const Params *p, Ground *ground, SimulationDef *def, con
     if (length <= 0.0)
         return NULL;
     if (origin == ORIGIN_LSYSTEM) {
-        net = lsystem_veins(p, ground, length, def->seed, error);
+        net = ground_lsystem(ground, p, length, def->seed, error);
         return net ? leaf_of(p, ground, def->seed, def->threads, net, length, END_LSYSTEM) : NULL;
     }
     if (!drawn_network(p, ground, length, &net, error))

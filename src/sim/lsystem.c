@@ -8,36 +8,43 @@ G_DEFINE_QUARK(venation-lsystem-error-quark, lsystem_error)
 
 enum { MAX_ITERATIONS = 1000, MAX_SYMBOLS = 1 << 28 };
 
-static const char turtle_symbols[] = "+-[]|!@";
+static const char turtle_symbols[] = "+-[]|!@^<>~$";
 
-/* --- a pinnate leaf --- */
+/* --- leaves --- */
 
-enum { MAX_TURNS = 4, N_PINNATE = 7 };
+enum { MAX_TURNS = 4, N_PRODUCTIONS = 8 };
 
 /* `l` and `r` turn left and right by as many angles of the system as a lateral leaves the midvein at. A lateral's steps are a third of an
  * internode (THIRD: 0.9^11). From each a vein of the third order, twice the lateral's angle off, crosses half of the space to the next
- * lateral and bears a veinlet; the first pair (M, N) has some on its outer side too. */
+ * lateral and bears a veinlet; the lowest pair (M, N) has on its outer side veins that run to the margin, as where bases are broad or lobed. What
+ * is left to the margin when the last iteration is done has no branches. */
 #define THIRD "@@@@@@@@@@@"
-#define LATERALS(l, r, left, right) "[" l THIRD "FF[" r r "T]F[" r r "T]" left "][" r THIRD "FF[" l l "U]F[" l l "U]" right "]"
+#define LATERALS(l, r, start, left_outer, right_outer, left, right)                                                                       \
+    "[" l start THIRD "FF[" r r "T]" left_outer "F[" r r "T]" left "$][" r start THIRD "FF[" l l "U]" right_outer "F[" l l "U]" right "$]"
 #define SIDE(turns, t) "F[" turns t "]F[" turns t "]F[" turns t "]F[" turns t "]"
-#define BOTH(turns, t, outer, u) "F[" turns t "][" outer u "]F[" turns t "][" outer u "]F[" turns t "][" outer u "]"
-#define PINNATE(l, r)                                                                                                                     \
+#define BRANCHED(turns, t, vein) "F[" turns t "]F[" turns t "]F[" turns t "][" vein "]F[" turns t "]"
+#define PRODUCTIONS(l, r)                                                                                                                 \
     {                                                                                                                                     \
-        "V=F" LATERALS(l, r, "L", "R") "V", "L=" SIDE(r r, "T") "L", "R=" SIDE(l l, "U") "R", "M=" BOTH(r r, "T", l, "U") "M",            \
-            "N=" BOTH(l l, "U", r, "T") "N", "T=F[" l "@@@@@@F]@@@@@@@F", "U=F[" r "@@@@@@F]@@@@@@@F"                                     \
+        "V=F" LATERALS(l, r, "", "", "", "L", "R") "V", "L=" SIDE(r r, "T") "L", "R=" SIDE(l l, "U") "R",                                 \
+            "M=" BRANCHED(r r, "T", l "FFL$") "M", "N=" BRANCHED(l l, "U", r "FFR$") "N",                                                     \
+            "T=F[" l "@@@@@@F]@@@@@@@F", "U=F[" r "@@@@@@F]@@@@@@@F", "W=F" LOWEST(l, r) "V"                                              \
     }
-#define AXIOM(l, r) LATERALS(l, r, "M", "N") "V"
-static const char *const pinnate[MAX_TURNS][N_PINNATE] = {PINNATE("+", "-"), PINNATE("++", "--"), PINNATE("+++", "---"),
-                                                          PINNATE("++++", "----")};
-static const char *const pinnate_axiom[MAX_TURNS] = {AXIOM("+", "-"), AXIOM("++", "--"), AXIOM("+++", "---"), AXIOM("++++", "----")};
+#define LOWEST(l, r) LATERALS(l, r, "~", "[" l "FFL$]", "[" r "FFR$]", "M", "N")
+#define PINNATE(l, r) LOWEST(l, r) "V"
+static const char *const production[MAX_TURNS][N_PRODUCTIONS] = {PRODUCTIONS("+", "-"), PRODUCTIONS("++", "--"),
+                                                                 PRODUCTIONS("+++", "---"), PRODUCTIONS("++++", "----")};
+static const char *const pinnate[MAX_TURNS] = {PINNATE("+", "-"), PINNATE("++", "--"), PINNATE("+++", "---"), PINNATE("++++", "----")};
+/* A midvein in each lobe, beginning where they part; as many branches as there may be lobes. */
+#define PALMATE(l, r) "^[<W][<<W][<<<W][<<<<W][>W][>>W][>>>W][>>>>W]" PINNATE(l, r)
+static const char *const palmate[MAX_TURNS] = {PALMATE("+", "-"), PALMATE("++", "--"), PALMATE("+++", "---"), PALMATE("++++", "----")};
 
-LSystemDef lsystem_def_pinnate(uint32_t margin_veins)
+static LSystemDef def_of(bool lobes, uint32_t margin_veins)
 {
     uint32_t n = (CLAMP(margin_veins, 8, 34) - 2) / 2;
     uint32_t turns = CLAMP((uint32_t)(50.0 * n / 180.0 + 0.5), 1, MAX_TURNS);
-    LSystemDef def = {.axiom = pinnate_axiom[turns - 1],
-                      .production = pinnate[turns - 1],
-                      .n_productions = N_PINNATE,
+    LSystemDef def = {.axiom = (lobes ? palmate : pinnate)[turns - 1],
+                      .production = production[turns - 1],
+                      .n_productions = N_PRODUCTIONS,
                       .iterations = n,
                       .max_symbols = 1000000,
                       .draws = "VLRMN",
@@ -54,6 +61,10 @@ LSystemDef lsystem_def_pinnate(uint32_t margin_veins)
     def.step = 0.97 / (whole + last);
     return def;
 }
+
+LSystemDef lsystem_def_pinnate(uint32_t margin_veins) { return def_of(false, margin_veins); }
+
+LSystemDef lsystem_def_palmate(uint32_t margin_veins) { return def_of(true, margin_veins); }
 
 LSystemDef lsystem_def_default(void) { return lsystem_def_pinnate(16); }
 

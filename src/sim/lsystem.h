@@ -8,7 +8,7 @@
 #include "sim/network.h"
 #include "sim/width.h"
 
-/* Symbols are letters, digits and + - [ ] | ! @; blanks are skipped. To the turtle, which starts at the base and looks at the tip,
+/* Symbols are letters, digits and + - [ ] | ! @ ^ < > ~ $; blanks are skipped. To the turtle, which starts at the base and looks at the tip,
  *
  *   F, and each symbol of `draws`   a step forwards that leaves a vein
  *   f                               a step without one; what is drawn next begins a vein of its own, with a first node
@@ -16,6 +16,17 @@
  *   |                               turns round, 180°
  *   [ ]                             a branch: remembers where the turtle is and how it draws, and goes back there
  *   ! @                             from here to the end of the branch widths are multiplied by `width_scale`, lengths by `length_scale`
+ *
+ * Some ask for the blade, and do nothing where there is none:
+ *
+ *   ^               draws straight on to the hub, where the blade's lobes part (sim/lobes.h); steps are then parts of the way from there to
+ *                   the tip
+ *   < >             turn to the tip of the next lobe on the left, on the right. From here to the end of the branch steps and the bend are
+ *                   parts of the way to that tip, the bend is towards it, veins end where the lobe's field does, and orders begin at 1.
+ *                   Where there is no further lobe the rest of the branch is not drawn
+ *   ~               the vein minds at its beginning: as long as there is no room ahead it turns towards the lobe's own vein, and bears
+ *                   nothing; its branches stay on its side of the lobe's vein
+ *   $               draws on to the margin or the end of the field
  *
  * and all others mean nothing. The step of a symbol that the k-th iteration wrote is step · length_scale^k long, its width
  * width · width_scale^k. */
@@ -43,9 +54,13 @@ typedef struct {
  * and R on its left and right have one production each, but not which. Here an iteration adds to the midvein an internode with a pair of
  * laterals and to each lateral four steps with veins of the third order. The axiom is [+L][-R]V, for after a midvein that grows the right
  * one would sit at the tip; and a lateral leaves by as many + or - (1 to 4) as bring it nearest to 50°, which one angle of 180/N is only
- * for N near 4. Steps shrink towards the tip by 0.9 an iteration; laterals turn towards it and end at the margin. S is held within 8 … 34;
- * the default is 16, of which the lowest two have no room in a blade whose base is narrower than 51° either side. */
+ * for N near 4. Steps shrink towards the tip by 0.9 an iteration; laterals turn towards it and go on to the margin. The lowest pair gives way
+ * where the base is narrow or dented, and has veins on its outer side that run to the margin. S is held within 8 … 34; the default is 16. */
 LSystemDef lsystem_def_pinnate(uint32_t margin_veins);
+
+/* A palmate leaf: the same midvein in each lobe of the blade, all from the hub; the lowest laterals of each have branches on both sides, which
+ * fill what lies below the outermost lobes. `margin_veins` counts as for the pinnate leaf, and so for each lobe. */
+LSystemDef lsystem_def_palmate(uint32_t margin_veins);
 LSystemDef lsystem_def_default(void);
 
 typedef enum {
@@ -72,8 +87,9 @@ void lstring_free(LString *s);
  * and a margin. Steps are cut into pieces no longer than a segment, each an edge. A vein that comes to the margin ends there, just
  * inside, and with it the rest of its branch; veins may cross one another if the productions make them. Nodes are numbered as they are
  * drawn, so that tails are older than heads; births are the iterations, and never before the parent's. Orders are the depth of
- * brackets, from 1; a vein is what one branch draws without those that leave it. Flow and rank are network_assign_widths'. *margin_veins,
- * unless NULL, receives how many veins came to the margin. O(pieces + pieces near the margin · vertices). */
+ * brackets, from 1 (in a lobe, from its own vein); a vein is what one branch draws without those that leave it. Flow and rank are network_assign_widths'. *margin_veins,
+ * unless NULL, receives how many veins came to the margin. O(pieces + pieces near the margin · vertices); where
+ * lobes are asked for, 1900 · vertices more. */
 Network *lsystem_network(const LSystemDef *def, const Polygon *leaf, double length, uint32_t *margin_veins, GError **error);
 
 /* Whether the numbers of the definition are in their ranges; lsystem_network asks it too. */

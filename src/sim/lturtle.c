@@ -2,94 +2,7 @@
 #include <string.h>
 
 #include "geom/bezier.h"
-#include "geom/segment.h"
-#include "sim/lsystem.h"
-
-enum { NONE = UINT32_MAX, MAX_ORDER = 250 };
-
-/* A place where drawing may start: the base, or the end of an f. Its node is made when something is drawn there. */
-typedef struct {
-    Vec2 at;
-    uint32_t node;
-} Spot;
-
-typedef struct {
-    Vec2 at;
-    double heading;       /* degrees from the x axis */
-    double length, width; /* factors of @ and ! */
-    uint32_t node, spot;  /* where it is: a node, or NONE and a spot */
-    uint32_t vein;        /* that it draws; NONE before its first piece */
-    bool stopped;         /* at the margin */
-    Vec2 centre;          /* all points nearer than `radius` to the centre are inside the margin */
-    double radius;
-} Turtle;
-
-typedef struct {
-    uint32_t tail, head, vein;
-    uint16_t born;
-    uint8_t order;
-    double width;
-} Piece;
-
-typedef struct {
-    const LSystemDef *def;
-    double unit;            /* segments in a leaf length */
-    Polygon *margin;        /* segments; NULL: none */
-    double *length, *width; /* [iterations + 1] of a step, segments, by the iteration that wrote it */
-    GArray *node;           /* Vec2 */
-    GArray *birth;          /* uint32_t, of nodes */
-    GArray *piece;          /* Piece */
-    GArray *spot;           /* Spot */
-    uint32_t n_veins, n_margin;
-} Drawing;
-
-/* --- margin --- */
-
-/* How much of the way from a to b, 0 … 1, lies before the margin first crosses it; crossings at a itself, where a vein starts on the
- * margin, don't count. */
-static double way_to_margin(const Polygon *p, Vec2 a, Vec2 b)
-{
-    Vec2 d = vec_sub(b, a);
-    double first = 1.0;
-    for (uint32_t i = 0; i < p->n; i++) {
-        Vec2 c = p->v[i], e = vec_sub(p->v[i + 1 < p->n ? i + 1 : 0], c);
-        double across = vec_cross(d, e);
-        if (across == 0.0)
-            continue;
-        double t = vec_cross(vec_sub(c, a), e) / across, u = vec_cross(vec_sub(c, a), d) / across;
-        if (u >= 0.0 && u <= 1.0 && t > 1e-9 && t < first)
-            first = t;
-    }
-    return first;
-}
-
-/* Where a straight piece from the turtle to `to` ends: there, or just inside the margin, and then the turtle is stopped. FALSE when it has
- * no length. */
-static bool clip(const Drawing *d, Turtle *t, Vec2 *to)
-{
-    if (!d->margin || vec_dist(*to, t->centre) < t->radius)
-        return true;
-    t->centre = t->at;
-    t->radius = polygon_depth(d->margin, t->at);
-    if (vec_dist(*to, t->at) < t->radius)
-        return true;
-    double way = way_to_margin(d->margin, t->at, *to);
-    if (!polygon_contains(d->margin, vec_lerp(t->at, *to, 0.5 * way))) {
-        t->stopped = true;
-        return false;
-    }
-    if (way == 1.0 && polygon_contains(d->margin, *to))
-        return true;
-    t->stopped = true;
-    for (double back = 0x1p-30; back < 1.0; back *= 2.0) { /* as near to the margin as rounding lets it be inside */
-        Vec2 end = vec_lerp(t->at, *to, way * (1.0 - back));
-        if (polygon_contains(d->margin, end)) {
-            *to = end;
-            return true;
-        }
-    }
-    return false;
-}
+#include "sim/lturtle.h"
 
 /* --- drawing --- */
 
@@ -111,9 +24,9 @@ static uint32_t here(Drawing *d, Turtle *t, uint32_t birth)
     return t->node = spot->node;
 }
 
-static void draw_piece(Drawing *d, Turtle *t, Vec2 to, uint16_t born, uint32_t depth)
+void lturtle_draw(Drawing *d, Turtle *t, Vec2 to, uint16_t born, uint32_t depth)
 {
-    if (to.x == t->at.x && to.y == t->at.y)
+    if ((to.x == t->at.x && to.y == t->at.y) || (d->overflow |= d->piece->len >= d->def->max_symbols))
         return;
     uint32_t tail = here(d, t, born), birth = MAX(born, g_array_index(d->birth, uint32_t, tail));
     if (t->vein == NONE)
@@ -122,37 +35,43 @@ static void draw_piece(Drawing *d, Turtle *t, Vec2 to, uint16_t born, uint32_t d
                    .head = add_node(d, to, birth),
                    .vein = t->vein,
                    .born = (uint16_t)birth,
-                   .order = (uint8_t)MIN(depth + 1, MAX_ORDER),
+                   .order = (uint8_t)MIN(depth - t->first + 1, MAX_ORDER),
                    .width = d->width[born] * t->width};
     g_array_append_val(d->piece, piece);
     t->node = piece.head;
     t->at = to;
 }
 
-static uint32_t pieces_of(double length) { return length > 1.0 ? (uint32_t)ceil(length - 1e-9) : 1; }
-
-/* One step: veins turn towards the tip a little before each piece, which is straight. */
-static void step(Drawing *d, Turtle *t, uint16_t born, uint32_t depth, bool draws)
+void lturtle_go(Drawing *d, Turtle *t, double length, uint32_t n, uint16_t born, uint32_t depth, bool draws)
 {
-    double length = d->length[born] * t->length, sine, cosine;
-    uint32_t n = pieces_of(length);
-    for (uint32_t k = 0; k < n && !t->stopped; k++) {
-        degrees_sincos(t->heading, &sine, &cosine);
+    double sine, cosine;
+    for (uint32_t k = 0; k < n && !t->stopped && !d->overflow; k++) {
         if (d->def->bend != 0.0) {
-            t->heading += d->def->bend * cosine * length / (n * d->unit);
-            degrees_sincos(t->heading, &sine, &cosine);
+            degrees_sincos(t->heading - t->tilt, &sine, &cosine);
+            t->heading += d->def->bend * cosine * length / (n * d->unit * t->scale);
         }
+        degrees_sincos(t->wary != 0.0 || t->swerve != 0.0 ? t->heading + lturtle_swerve(d, t, length / n) : t->heading, &sine, &cosine);
         Vec2 to = vec_add(t->at, vec_scale(vec2(cosine, sine), length / n));
-        if (!clip(d, t, &to))
+        if (!lturtle_in_field(d, t, to)) {
+            t->stopped = true;
+            return;
+        }
+        if (!lturtle_clip(d, t, &to))
             break;
         if (draws)
-            draw_piece(d, t, to, born, depth);
+            lturtle_draw(d, t, to, born, depth);
         else
             t->at = to;
     }
-    if (draws) {
+    if (draws)
         d->n_margin += t->stopped && t->vein != NONE;
-    } else if (!t->stopped) {
+}
+
+static void step(Drawing *d, Turtle *t, uint16_t born, uint32_t depth, bool draws)
+{
+    double length = d->length[born] * t->length * t->scale;
+    lturtle_go(d, t, length, lturtle_pieces(length), born, depth, draws);
+    if (!draws && !t->stopped) {
         Spot spot = {t->at, NONE};
         g_array_append_val(d->spot, spot);
         t->node = t->vein = NONE;
@@ -167,6 +86,11 @@ static void obey(Drawing *d, Turtle *t, char symbol, uint16_t born, uint32_t dep
     if (draws(d->def, symbol) || symbol == 'f') {
         if (!t->stopped)
             step(d, t, born, depth, draws(d->def, symbol));
+        return;
+    }
+    if (symbol != '\0' && strchr("^<>~$", symbol)) {
+        if (d->margin && !t->stopped)
+            lturtle_obey_blade(d, t, symbol, born, depth);
         return;
     }
     switch (symbol) {
@@ -193,13 +117,15 @@ static void obey(Drawing *d, Turtle *t, char symbol, uint16_t born, uint32_t dep
 static void draw(Drawing *d, const LString *s)
 {
     GArray *stack = g_array_new(FALSE, FALSE, sizeof(Turtle));
-    Turtle t = {.heading = 90.0, .length = 1.0, .width = 1.0, .node = NONE, .vein = NONE};
+    Turtle t = {.heading = 90.0, .length = 1.0, .width = 1.0, .scale = 1.0, .node = NONE, .vein = NONE};
     const Spot base = {{0.0, 0.0}, NONE};
     g_array_append_val(d->spot, base);
     for (uint32_t i = 0; i < s->n; i++) {
         if (s->symbol[i] == '[') {
             g_array_append_val(stack, t);
             t.vein = NONE;
+            t.stopped |= t.swerve != 0.0; /* there's no room for branches either */
+            t.wary = 0.0;
         } else if (s->symbol[i] == ']') {
             t = g_array_index(stack, Turtle, stack->len - 1);
             g_array_set_size(stack, stack->len - 1);
@@ -212,7 +138,17 @@ static void draw(Drawing *d, const LString *s)
 
 /* --- limits --- */
 
-/* Pieces in the whole drawing, were nothing cut off; the string's @ are followed as the turtle would. */
+static bool fail_pieces(double pieces, const LSystemDef *def, GError **error)
+{
+    g_set_error(
+        error, LSYSTEM_ERROR, LSYSTEM_ERROR_LIMIT,
+        "the L-system's veins would be drawn in %s%.0f pieces of a segment; the limit is %u. Fewer iterations or a smaller leaf have less",
+        pieces > def->max_symbols ? "" : "more than ", pieces, def->max_symbols);
+    return false;
+}
+
+/* Pieces in the whole drawing, were nothing cut off; the string's @ are followed as the turtle would. What depends on the blade is counted
+ * as it is drawn. */
 static bool check_pieces(const Drawing *d, const LString *s, GError **error)
 {
     double pieces = 0.0, scale = 1.0;
@@ -232,11 +168,7 @@ static bool check_pieces(const Drawing *d, const LString *s, GError **error)
     g_array_unref(stack);
     if (pieces <= d->def->max_symbols)
         return true;
-    g_set_error(
-        error, LSYSTEM_ERROR, LSYSTEM_ERROR_LIMIT,
-        "the L-system's veins would be drawn in %.0f pieces of a segment; the limit is %u. Fewer iterations or a smaller leaf have less",
-        pieces, d->def->max_symbols);
-    return false;
+    return fail_pieces(pieces, d->def, error);
 }
 
 /* --- the network --- */
@@ -316,7 +248,9 @@ Network *lsystem_network(const LSystemDef *def, const Polygon *leaf, double leng
     drawing_init(&d, def, leaf, length);
     if (check_pieces(&d, s, error)) {
         draw(&d, s);
-        if (d.piece->len > 0)
+        if (d.overflow)
+            fail_pieces(def->max_symbols, def, error);
+        else if (d.piece->len > 0)
             net = take_network(&d);
         else
             g_set_error(error, LSYSTEM_ERROR, LSYSTEM_ERROR_EMPTY, "the L-system draws nothing in the leaf");

@@ -863,7 +863,7 @@ def test_grow_conflicts():
     refused("throws a dart where there is room for one", "sources.density=1e-7", "growth.final_length=3000", "veins.kill_distance=1",
             "sources.birth_distance_veins=1")
     refused("needs growth.kind = marginal or none", "sources.placement=margin")
-    refused("needs scan.file too", "veins.origin=drawn", "veins.drawing=lines.txt")
+    refused("venation: --set veins.drawing: a text file of lines is in pixels of a scan", "veins.origin=drawn", "veins.drawing=lines.txt")
     refused("[lsystem]: ", "veins.origin=lsystem", "lsystem.productions=F=F[")
 
 

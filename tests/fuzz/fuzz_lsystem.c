@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (!p)
         return 0;
     OutlineDef outline = outline_def_default();
-    LSystemDef def = settings_lsystem(p, 1);
+    LSystemDef def = settings_lsystem(p, params_choice(p, PARAM_LSYSTEM_PRESET) == 2, 1);
     Polygon *leaf = outline_new(&outline, NULL);
     def.max_symbols = 3000; /* that is enough to go wrong, and quick */
     Network *net = lsystem_network(&def, leaf, 40.0, NULL, &error);

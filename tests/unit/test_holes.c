@@ -377,7 +377,7 @@ static void test_second_leaf(void)
     leave(dir);
 }
 
-/* Both sides of a sheet are read once: its leaves don't need the files any more. */
+/* Both sides of a sheet are searched once. A leaf that takes up most of it keeps its scan, which is read anew for the next leaf: it must be the same. */
 static void test_sheet(void)
 {
     GError *error = NULL;
@@ -389,8 +389,6 @@ static void test_sheet(void)
     GroundScan *sheet = ground_scan_new(p->values, &error);
     g_assert_no_error(error);
     g_assert_cmpuint(ground_scan_leaves(sheet), ==, 2);
-    g_unlink(front);
-    g_unlink(back);
     double side[2];
     for (int leaf = 0; leaf < 2; leaf++) {
         set(p, "scan.leaf", leaf ? "2" : "1");
@@ -401,6 +399,17 @@ static void test_sheet(void)
         ground_unref(g);
     }
     g_assert_cmpfloat(fabs(side[0] - side[1]), >, 200.0);
+    g_unlink(front);
+    g_assert_null(ground_new_on(sheet, p->values, false, &error));
+    g_assert_nonnull(strstr(error->message, "front.png: No such file"));
+    g_clear_error(&error);
+    Scan *other = scan_new(600, 500, 3, 8);
+    memset(other->px, 250, 3 * 600 * 500);
+    write_scan(other, front);
+    scan_free(other);
+    g_assert_null(ground_new_on(sheet, p->values, false, &error));
+    g_assert_nonnull(strstr(error->message, "is 600 × 500 pixels now, and was 700 × 500"));
+    g_clear_error(&error);
     ground_scan_free(sheet);
     ven_params_free(p);
     g_free(front);

@@ -459,7 +459,7 @@ static uint32_t laterals_at_margin(const Network *net)
     return n;
 }
 
-/* The default leaf in ovate blades: S laterals that meet the margin, the midvein to near the tip, four orders, no crossing, and the same
+/* The default leaf in ovate blades: S laterals that meet the margin, the midvein to near the tip, five orders, no crossing, and the same
  * on both sides when the blade is. */
 static void test_pinnate(void)
 {
@@ -474,7 +474,7 @@ static void test_pinnate(void)
             uint32_t margin;
             Network *net = lsystem_network(&def, leaf, 300.0, &margin, &error);
             g_assert_no_error(error);
-            check_network(net, 4);
+            check_network(net, 5);
             g_assert_cmpuint(margin, >=, laterals_at_margin(net));
             double top = 0.0, lean = 0.0;
             for (uint32_t v = 0; v < net->n_nodes; v++) {
