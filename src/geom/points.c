@@ -162,6 +162,62 @@ WIDE uint32_t points_nearest_to(const Points *p, Box2 box, double bound2, Points
     return m;
 }
 
+/* ---- the nearest one ---- */
+
+/* Which lane has the least squared distance; of equally near ones that of the first number. */
+POINTS_INLINE uint32_t lane_of_least(const Four *least, const FourMask *number)
+{
+    uint32_t l = 0;
+    for (uint32_t k = 1; k < 4; k++)
+        if ((*least)[k] < (*least)[l] || ((*least)[k] == (*least)[l] && (*number)[k] < (*number)[l]))
+            l = k;
+    return l;
+}
+
+/* Finds the point nearest to a place, if one is nearer than sqrt(*d2); UINT32_MAX: none. */
+POINTS_INLINE uint32_t nearest_one(const Points *p, Vec2 at, double *d2)
+{
+    Four x = FOUR(at.x), y = FOUR(at.y), least = FOUR(*d2);
+    FourMask best = FOUR_MASK(UINT32_MAX), number = {0, 1, 2, 3};
+    for (uint32_t i = 0; i < p->n; i += 4, number += FOUR_MASK(4)) {
+        Four dx = FOUR_AT(p->x + i) - x, dy = FOUR_AT(p->y + i) - y, e2 = dx * dx + dy * dy;
+        FourMask nearer = e2 < least;
+        least = FOUR_PICK(nearer, e2, least);
+        best = (number & nearer) | (best & ~nearer);
+    }
+    uint32_t l = lane_of_least(&least, &best);
+    *d2 = least[l];
+    return (uint32_t)best[l];
+}
+
+WIDE void points_nearest(const Points *p, Vec2 at, uint32_t *best, double *best2)
+{
+    uint32_t i = nearest_one(p, at, best2);
+    if (i != UINT32_MAX)
+        *best = p->v[i];
+}
+
+/* How much farther off than the one nearest to the middle another one is, squared, changes linearly over the box, so it is least in a corner: by
+ * 2 (|dx| half_x + |dy| half_y) less than in the middle. The slack is that of all distances there may be. */
+WIDE uint32_t points_sole(const Points *p, Box2 box)
+{
+    const double slack = POINTS_SLACK - 1.0;
+    Vec2 mid = vec2((box.x0 + box.x1) * 0.5, (box.y0 + box.y1) * 0.5); /* rounded: so half a side is what it takes from there */
+    double half_x = MAX(box.x1 - mid.x, mid.x - box.x0), half_y = MAX(box.y1 - mid.y, mid.y - box.y0), near2 = HUGE_VAL;
+    uint32_t sole = nearest_one(p, mid, &near2);
+    if (sole == UINT32_MAX)
+        return sole;
+    Four limit = FOUR(near2 * POINTS_SLACK + 4.0 * slack * (half_x * half_x + half_y * half_y));
+    Four x = FOUR(p->x[sole]), y = FOUR(p->y[sole]), two_x = FOUR(2.0 * half_x), two_y = FOUR(2.0 * half_y);
+    FourMask others = FOUR_MASK(0), number = {0, 1, 2, 3};
+    for (uint32_t i = 0; i < p->n; i += 4, number += FOUR_MASK(4)) {
+        Four px = FOUR_AT(p->x + i), py = FOUR_AT(p->y + i), dx = px - FOUR(mid.x), dy = py - FOUR(mid.y);
+        Four least = (dx * dx + dy * dy) * FOUR(1.0 - slack) - (FOUR_ABS(px - x) * two_x + FOUR_ABS(py - y) * two_y);
+        others |= (least <= limit) & (number != FOUR_MASK(sole)); /* never one beyond the last, which is out of sight */
+    }
+    return FOUR_ANY(others) ? UINT32_MAX : p->v[sole];
+}
+
 /* ---- rivals ---- */
 
 WIDE void guard_make(Guard *g, Box2 box, const Points *near, bool nearest_alone)
@@ -169,7 +225,10 @@ WIDE void guard_make(Guard *g, Box2 box, const Points *near, bool nearest_alone)
     const Four cx = {box.x0, box.x1, box.x0, box.x1}, cy = {box.y0, box.y0, box.y1, box.y1};
     Four best2 = FOUR(HUGE_VAL);
     FourMask best = {0, 0, 0, 0};
-    *g = (Guard){.box = box, .hull = box_empty(), .all = near->n <= 4, .nearest_alone = nearest_alone};
+    g->box = box;
+    g->hull = box_empty();
+    g->all = near->n <= 4;
+    g->nearest_alone = nearest_alone;
     for (uint32_t i = 0; i < near->n; i++)
         g->hull = box_add(g->hull, vec2(near->x[i], near->y[i]));
     for (uint32_t i = 0; i < near->n && !g->all; i++) {

@@ -25,6 +25,12 @@ void points_fill(Points *p, const Vec2 *pos);
  * `out`, which may be `p`; more than POINTS_MOST: they did not fit, and it is of no use. Depends on the points alone. O(n). */
 uint32_t points_nearest_to(const Points *p, Box2 box, double bound2, Points *out);
 
+/* The only one that is nearest to any place in the box; UINT32_MAX: there are several, as far as this tells. O(n). */
+uint32_t points_sole(const Points *p, Box2 box);
+
+/* Moves *best and *best2 to the point nearest to `at`, if one is nearer than sqrt(*best2): of equally near ones the first. O(n). */
+void points_nearest(const Points *p, Vec2 at, uint32_t *best, double *best2);
+
 /* With near->n > 0 points, the nearest one to any place in the box among them: all of p but such as the nearest one, or (unless nearest_alone)
  * another, excludes from the relative neighbourhood of any place in the box (neighbours.h), and some more. Returns how many; more than `cap`
  * when they did not fit. `out` may be `p`. */

@@ -11,17 +11,15 @@ typedef struct {
     Neighbour m[HOOD_MAX], w[HOOD_WITNESSES];
 } View;
 
-static View view(const Hood *h, const Vec2 *pos, Vec2 s)
+static void view_init(View *v, const Hood *h, const Vec2 *pos, Vec2 s)
 {
-    View v;
-    v.s = s;
-    v.n = h->n;
-    v.n_witnesses = h->n_witnesses;
-    for (uint32_t i = 0; i < v.n; i++)
-        v.m[i] = neighbour(pos, s, h->m[i]);
-    for (uint32_t i = 0; i < v.n_witnesses; i++)
-        v.w[i] = neighbour(pos, s, h->w[i]);
-    return v;
+    v->s = s;
+    v->n = h->n;
+    v->n_witnesses = h->n_witnesses;
+    for (uint32_t i = 0; i < v->n; i++)
+        v->m[i] = neighbour(pos, s, h->m[i]);
+    for (uint32_t i = 0; i < v->n_witnesses; i++)
+        v->w[i] = neighbour(pos, s, h->w[i]);
 }
 
 static void hood_store(Hood *h, const View *v)
@@ -109,7 +107,8 @@ static uint32_t zone_cut(Box2 *z, Vec2 *corner, uint32_t n, Vec2 s, const Neighb
  * lune of s and a neighbour (then it excludes that one). */
 Box2 hood_zone(const Hood *h, const Field *f, Vec2 s)
 {
-    View v = view(h, f->pos, s);
+    View v;
+    view_init(&v, h, f->pos, s);
     Box2 z = box_empty(), field = f->field;
     Vec2 c[ZONE_CORNERS + 1] = {vec_sub(vec2(field.x0, field.y0), s), vec_sub(vec2(field.x1, field.y0), s),
                                 vec_sub(vec2(field.x1, field.y1), s), vec_sub(vec2(field.x0, field.y1), s)};
@@ -193,7 +192,9 @@ static void open_square(Heap *heap, const Field *f, const View *v, QuadSquare q)
 
 void hood_find(Hood *h, const Field *f, Vec2 s)
 {
-    View v = {.s = s};
+    View v;
+    v.s = s;
+    v.n = v.n_witnesses = 0;
     Heap heap;
     heap_init(&heap);
     push_square(&heap, quadtree_root(f->tree), 0.0);
@@ -386,15 +387,19 @@ static bool candidate_taken(const View *h, const Field *f, const Candidates *c, 
 
 bool hood_update(Hood *h, const Field *f, Vec2 s, const Boxtree *fresh)
 {
-    View old = view(h, f->pos, s);
+    View old, v;
+    view_init(&old, h, f->pos, s);
     Candidates c;
     candidates_init(&c);
     look_at_fresh(&old, f, fresh, &c);
     if (c.n == 0)
         return false;
     candidates_sort(&c);
-    View v = old;
+    v.s = s;
     v.n = 0;
+    v.n_witnesses = old.n_witnesses;
+    for (uint32_t i = 0; i < old.n_witnesses; i++)
+        v.w[i] = old.w[i];
     for (uint32_t i = 0; i < old.n; i++)
         if (!(c.gone >> i & 1))
             member_add(&v, &old.m[i]);

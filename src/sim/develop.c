@@ -84,7 +84,7 @@ static void bar_pulled(uint32_t first, uint32_t last, void *user)
 static void grow_pulled(Simulation *s)
 {
     enum { GRAIN = 128 }; /* some ten microseconds */
-    bool looked = s->looked = pool_threads(s->pool) > 1 && s->n_pulled > GRAIN;
+    bool looked = s->looked = pool_threads(s->pool) > 1 && s->n_pulled > 16 * GRAIN;
     s->n_fresh = 0;
     quadtree_reset(&s->young, field_box(s));
     if (looked)

@@ -46,7 +46,7 @@ void source_look_open(Simulation *s, uint32_t k)
     Eye eye;
     Field f = source_field(s, k, &eye);
     double before = s->near2[k];
-    boxtree_nearest(&s->fresh_tree, s->veins.pos, s->place[k], f.sees, f.user, &s->near[k], &s->near2[k]);
+    fresh_nearest(s, &f, s->place[k], &s->near[k], &s->near2[k]);
     if (s->near2[k] == before)
         return;
     s->mark[k] &= (uint8_t)~MARK_IDLE;
@@ -126,16 +126,16 @@ static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, const Draw 
 {
     if (c->most2 < 0.0)
         return 0;
-    if (c->lone == NO_POINT)
-        crowd_fetch(s, c);
-    bool open = s->def.pattern == PATTERN_OPEN, few = c->plain >= CROWD_LEAST && crowd_sight(s, c, sight);
-    if (c->lone != NO_POINT) {
-        if (few && crowd_turns(s, c, sight)) {
-            c->lone = sight->nearest.v[0];
-            return crowd_draw_lone(s, c, draw);
-        }
-        crowd_wake(s, c);
+    bool open = s->def.pattern == PATTERN_OPEN, lone = c->lone != NO_POINT;
+    uint32_t sole = lone ? crowd_sole(s, c) : NO_POINT;
+    if (sole != NO_POINT && crowd_turns(s, c, sole) && (open || !crowd_has_rivals(s, c, sole, sight))) {
+        c->lone = sole;
+        return crowd_draw_lone(s, c, draw);
     }
+    if (!lone)
+        crowd_fetch(s, c);
+    bool few = c->plain >= CROWD_LEAST && crowd_sight(s, c, sight);
+    crowd_wake(s, c);
     if (open && few && sight->nearest.n == 0) {
         pulls_draw(s, c->first[0], c->last[0], draw); /* its cells are not in several runs */
         return 0;

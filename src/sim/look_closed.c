@@ -127,7 +127,8 @@ static __attribute__((noinline)) void show_each(Simulation *s, uint32_t k, uint3
 BLOCK_INLINE void show_block(Simulation *s, const Columns *c, uint32_t k, uint32_t n, const Show *show, uint32_t few, Four *most2)
 {
     Block b;
-    Plight p = {.more = FOUR_MASK(0)};
+    Plight p;
+    p.more = FOUR_MASK(0);
     block_look(c, k, n, show->sight, few, false, &b);
     FourMask old = __builtin_convertvector(block_old(c, k, n), FourMask);
     p.plain = b.near2 >= FOUR(0.0);

@@ -44,6 +44,7 @@ typedef struct {
     EightNodes node, count; /* in two halves of a lane of x each; node NO_POINT: none */
     FourNodes line[4];      /* node i, to compare four slots with */
     uint32_t entry[4], next; /* in pulled[]; the one to go next */
+    uint32_t live;           /* sources that pull */
 } Sums;
 
 static void sums_put(Simulation *s, const Sums *sums, uint32_t i, uint32_t k)
@@ -100,21 +101,28 @@ WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const D
     const uint32_t *near = s->near;
     const double *near2 = s->near2;
     double *restrict x = draw->x + (first - draw->first), *restrict y = draw->y + (first - draw->first);
-    for (uint32_t k = first; k < last; k += 4, x += 4, y += 4) {
-        uint32_t n = MIN(last - k, 4);
-        Four d2 = FOUR(1.0);
-        for (uint32_t l = 0; l < n; l++) {
+    uint32_t k = first;
+    for (; k + 4 <= last; k += 4, x += 4, y += 4) {
+        Four dx, dy, d2;
+        for (uint32_t l = 0; l < 4; l++) {
             uint32_t v = near[k + l];
             Vec2 towards = vec_sub(place[k + l], pos[v < NEAR_APART ? v : 0]);
-            x[l] = towards.x;
-            y[l] = towards.y;
+            dx[l] = towards.x;
+            dy[l] = towards.y;
         }
-        memcpy(&d2, near2 + k, sizeof *near2 * n);
+        memcpy(&d2, near2 + k, sizeof d2);
         four_inverse_root(&d2, &d2);
-        for (uint32_t l = 0; l < n; l++) {
-            x[l] *= d2[l];
-            y[l] *= d2[l];
-        }
+        dx *= d2;
+        dy *= d2;
+        memcpy(x, &dx, sizeof dx);
+        memcpy(y, &dy, sizeof dy);
+    }
+    for (; k < last; k++, x++, y++) {
+        uint32_t v = near[k];
+        Vec2 towards = vec_sub(place[k], pos[v < NEAR_APART ? v : 0]);
+        double scale = 1.0 / sqrt(near2[k]);
+        *x = towards.x * scale;
+        *y = towards.y * scale;
     }
 }
 
@@ -127,11 +135,11 @@ static void pull_apart(Simulation *s, Sums *sums, uint32_t k, double x, double y
         if (s->near[k] == NO_POINT || s->near2[k] <= past2(s))
             return;
         sums_add(s, sums, s->near[k], k, x, y);
-        s->n_live++;
+        sums->live++;
         return;
     }
     uint8_t mask = pulling(s, k);
-    s->n_live += mask != 0;
+    sums->live += mask != 0;
     for (uint8_t i = 0; mask; i++, mask >>= 1)
         if (mask & 1) {
             uint32_t v = s->source[k].hood.m[i];
@@ -169,7 +177,7 @@ static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, u
     for (uint32_t k = first; k < last; k++, x++, y++) {
         if (s->mark[k] == 0) {
             sums_add(s, sums, s->near[k], k, *x, *y);
-            s->n_live++;
+            sums->live++;
         } else if (!remove || !source_remove_reached(s, k)) {
             pull_apart(s, sums, k, *x, *y);
         }
@@ -210,32 +218,34 @@ static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t las
         live += 4;
     }
     sums->x = sum_x, sums->y = sum_y, sums->count = count;
-    s->n_live += live;
+    sums->live += live;
 }
 
-/* Those of a crowd that pull one node. */
-static void sum_lone(Simulation *s, Sums *sums, uint32_t first, uint32_t last, uint32_t v, const double *x, const double *y)
+/* Those of a crowd that pull one node, from slot first to last - 1. */
+static void sum_lone(Simulation *s, Sums *sums, Crowd *crowd, uint32_t first, uint32_t last, const double *x, const double *y)
 {
-    uint32_t i = sums_find(sums, v), n = last - first;
+    uint32_t v = crowd->lone, i = sums_find(sums, v), n = last - first;
     if (i == 4) {
         i = sums->next % 4;
         sums_turn(s, sums, v, first);
     }
-    double sum_x = sums->x[i], sum_y = sums->y[i];
-    for (uint32_t k = 0; k < n; k++) {
-        sum_x += x[k];
-        sum_y += y[k];
+    Vec2 sum = vec2(sums->x[i], sums->y[i]);
+    if (crowd->undrawn)
+        crowd->most2 = lone_sum(s->place + first, n, s->veins.pos[v], &sum, crowd->most2);
+    for (uint32_t k = 0; k < n && !crowd->undrawn; k++) {
+        sum.x += x[k];
+        sum.y += y[k];
     }
-    sums->x[i] = sum_x;
-    sums->y[i] = sum_y;
+    sums->x[i] = sum.x;
+    sums->y[i] = sum.y;
     sums->count[2 * i] += n;
     sums->count[2 * i + 1] += n;
-    s->n_live += n;
+    sums->live += n;
 }
 
 void pulls_sum(Simulation *s, const Band *band, bool remove, const double *x, const double *y)
 {
-    const Crowd *crowd = s->crowds.crowd;
+    Crowd *crowd = s->crowds.crowd;
     Sums sums = {.node = EIGHT_NODES(NO_POINT)};
     uint32_t done = band->first;
     memset(sums.line, 0xff, sizeof sums.line); /* NO_POINT */
@@ -245,12 +255,15 @@ void pulls_sum(Simulation *s, const Band *band, bool remove, const double *x, co
             if (crowd[c].lone == NO_POINT || first == last)
                 continue;
             sum_run(s, &sums, done, first, remove, x + (done - band->first), y + (done - band->first));
-            sum_lone(s, &sums, first, last, crowd[c].lone, x + (first - band->first), y + (first - band->first));
+            sum_lone(s, &sums, &crowd[c], first, last, x + (first - band->first), y + (first - band->first));
             done = last;
         }
     sum_run(s, &sums, done, band->last, remove, x + (done - band->first), y + (done - band->first));
     for (uint32_t i = 0; i < 4; i++)
         sums_put(s, &sums, i, band->last - 1);
+    for (uint32_t c = band->first_crowd; c < band->last_crowd; c++)
+        crowd[c].undrawn = false;
+    s->n_live += sums.live;
 }
 
 bool pulls_next(const Simulation *s, const Pulled *p, uint32_t from, Pull *pull)

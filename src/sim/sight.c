@@ -9,7 +9,10 @@ enum { FRESH_LIST = 1024 };
 void fresh_prepare(Simulation *s)
 {
     Points *p = &s->fresh_points;
-    p->n = s->n_fresh <= FRESH_LIST ? s->n_fresh : 0;
+    bool listed = s->n_fresh <= FRESH_LIST;
+    p->n = listed ? s->n_fresh : 0;
+    if (!listed || s->def.pattern == PATTERN_CLOSED) /* whose sources look at them in many ways */
+        boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
     if (!p->v) {
         p->v = g_new(uint32_t, points_room(FRESH_LIST));
         p->x = g_new(double, points_room(FRESH_LIST));
@@ -31,6 +34,24 @@ static uint32_t nearest_to(const Simulation *s, Box2 box, double bound2, Points 
     boxtree_sort(out->v, n);
     points_fill(out, s->veins.pos);
     return points_nearest_to(out, box, bound2, out);
+}
+
+void fresh_nearest(const Simulation *s, const Field *f, Vec2 p, uint32_t *near, double *near2)
+{
+    const Points *fresh = &s->fresh_points;
+    if (s->n_fresh > FRESH_LIST) {
+        boxtree_nearest(&s->fresh_tree, f->pos, p, f->sees, f->user, near, near2);
+    } else if (!f->sees) {
+        points_nearest(fresh, p, near, near2);
+    } else {
+        for (uint32_t i = 0; i < fresh->n; i++) {
+            double d2 = vec_dist2(p, vec2(fresh->x[i], fresh->y[i]));
+            if (d2 < *near2 && f->sees(f->user, fresh->v[i])) {
+                *near = fresh->v[i];
+                *near2 = d2;
+            }
+        }
+    }
 }
 
 /* With some of them the nearest: those of the others that may matter all the same. */
@@ -98,12 +119,42 @@ static void sight_kin(const Simulation *s, Sight *sight)
     }
 }
 
+uint32_t crowd_sole(const Simulation *s, const Crowd *c)
+{
+    Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
+    if (!q || q->n_nearest > POINTS_MOST)
+        return s->n_fresh <= FRESH_LIST ? points_sole(&s->fresh_points, c->place) : NO_POINT;
+    Points listed = {q->n_nearest, q->nearest.v, q->nearest.x, q->nearest.y};
+    return points_sole(&listed, c->place);
+}
+
+/* Rivals of the nearest ones in sight; more than FEW: too many. */
+static uint32_t sight_rivals(const Simulation *s, const Crowd *c, Sight *sight)
+{
+    Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
+    Points near = few_points(&sight->nearest), far = few_points(&sight->rival);
+    if (!q || q->n_nearest > POINTS_MOST || q->n_rivals > POINTS_MOST)
+        return rivals(s, c->place, &near, &far, FEW);
+    Points listed = {q->n_rivals, q->rival.v, q->rival.x, q->rival.y};
+    return points_rivals(&listed, c->place, &near, s->reach != NULL, &far, FEW);
+}
+
+bool crowd_has_rivals(const Simulation *s, const Crowd *c, uint32_t node, Sight *sight)
+{
+    Few *nearest = &sight->nearest;
+    nearest->n = 1;
+    nearest->v[0] = node;
+    nearest->x[0] = s->veins.pos[node].x;
+    nearest->y[0] = s->veins.pos[node].y;
+    return sight_rivals(s, c, sight) > 0;
+}
+
 bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
 {
     Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
     Few *nearest = &sight->nearest, *rival = &sight->rival;
     nearest->n = rival->n = 0;
-    Points near = few_points(nearest), far = few_points(rival);
+    Points near = few_points(nearest);
     bool listed = q && q->n_nearest <= POINTS_MOST;
     Points listed_near = listed ? (Points){q->n_nearest, q->nearest.v, q->nearest.x, q->nearest.y} : near;
     uint32_t n = listed ? points_nearest_to(&listed_near, c->place, c->most2, &near) : nearest_to(s, c->place, c->most2, &near);
@@ -113,12 +164,7 @@ bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
     sight_kin(s, sight);
     if (s->def.pattern == PATTERN_OPEN || n == 0)
         return true;
-    if (listed && q->n_rivals <= POINTS_MOST) {
-        Points listed_rivals = {q->n_rivals, q->rival.v, q->rival.x, q->rival.y};
-        n = points_rivals(&listed_rivals, c->place, &near, s->reach != NULL, &far, FEW);
-    } else {
-        n = rivals(s, c->place, &near, &far, FEW);
-    }
+    n = sight_rivals(s, c, sight);
     if (n > FEW)
         return false;
     rival->n = n;

@@ -131,7 +131,8 @@ void source_add(Simulation *s, Vec2 p)
         s->source[k] = (Source){.arrived = NO_POINT};
     if (s->cell)
         s->cell[k] = (Cell){0};
-    grid_add(&s->grid, p);
+    if (sources_need_room(s))
+        grid_add(&s->grid, p);
     s->n_unsorted++;
     s->counts.placed++;
 }
@@ -164,19 +165,21 @@ void source_remove(Simulation *s, uint32_t k)
  * how many there are. */
 static uint32_t *sorted_slots(const Simulation *s, uint32_t *start)
 {
-    uint32_t cells = grid_cells(&s->grid), *slot = g_new(uint32_t, MAX(sources_alive(s), 1));
+    uint32_t cells = grid_cells(&s->grid), alive = MAX(sources_alive(s), 1), *slot = g_new(uint32_t, alive), *cell = g_new(uint32_t, alive), n_cell = 0;
     memset(start, 0, sizeof *start * (cells + 1));
     for (uint32_t k = 0; k < s->n_sources; k++)
         if (source_is_alive(s, k))
-            start[grid_cell(&s->grid, s->place[k])]++;
+            start[cell[n_cell++] = grid_cell(&s->grid, s->place[k])]++;
     for (uint32_t c = 0, sum = 0; c <= cells; c++) {
         uint32_t n = start[c];
         start[c] = sum;
         sum += n;
     }
+    n_cell = 0;
     for (uint32_t k = 0; k < s->n_sources; k++)
         if (source_is_alive(s, k))
-            slot[start[grid_cell(&s->grid, s->place[k])]++] = k;
+            slot[start[cell[n_cell++]]++] = k;
+    g_free(cell);
     memmove(start + 1, start, sizeof *start * cells);
     start[0] = 0;
     return slot;
@@ -204,9 +207,11 @@ void sources_sort(Simulation *s)
     s->n_sources = n;
     s->n_removed = s->n_unsorted = 0;
     s->drawn = false; /* pulled[] speaks of the old slots */
-    grid_reset(&s->grid);
-    for (uint32_t k = 0; k < n; k++)
-        grid_add(&s->grid, s->place[k]);
+    if (sources_need_room(s)) {
+        grid_reset(&s->grid);
+        for (uint32_t k = 0; k < n; k++)
+            grid_add(&s->grid, s->place[k]);
+    }
     crowds_build(s, start);
     g_free(start);
 }

@@ -67,6 +67,7 @@ typedef struct {
     ZoneBox zone;                                 /* holds their zones */
     bool restless;                                /* one that is apart has no zone */
     uint32_t lone; /* unless NO_POINT: the one node that all of them pull, unmarked; near[] and near2[] don't say so */
+    bool undrawn;  /* lone, and drawn as it is summed up */
 } Crowd;
 
 /* Crowds side by side, whose slots follow each other. */
@@ -104,6 +105,15 @@ typedef struct {
     Square *square;
     uint32_t longest; /* slots of a band */
 } Crowds;
+
+/* Whether turns are faster by all threads or by one: found out again and again (turn.c). */
+typedef enum { PACE_SHARED, PACE_TRIAL, PACE_ALONE } PaceKind; /* by all; by one to compare, or because that was faster */
+typedef struct {
+    PaceKind kind;
+    uint32_t turns, shared, alone; /* of this kind, so far; how many of the other two there will be */
+    double time, sources;          /* microseconds in all, sources in all */
+    double cost;                   /* when shared, a source */
+} Pace;
 
 /* Squares of the frame that veins pass through. */
 enum { PATHS_WIDEST = 12 };
@@ -150,10 +160,8 @@ struct Simulation {
     Source *source;   /* [n_sources] closed */
     ZoneBox *zone;    /* [n_sources] closed: no node outside can concern the source */
     Cell *cell;       /* [n_sources] closed, Urquhart neighbourhoods */
-    Arrival *arrival;
-    uint32_t n_arrivals, cap_arrivals, unused_arrival;
-    uint32_t n_sources, cap_sources, n_removed, n_unsorted;
-    Grid grid;        /* of the sources; item = slot */
+    uint32_t n_sources, cap_sources, n_unsorted;
+    Grid grid;        /* of the sources' places; they are its items, item = slot, if sources_need_room */
     Crowds crowds;
     Paths paths;
     double dart_carry;
@@ -165,12 +173,10 @@ struct Simulation {
     uint32_t n_waiting, next_waiting;
     /* work space of one step */
     double *pull_x, *pull_y; /* of the bands under way */
-    gint *taken;             /* [n_groups] atomic: a thread is at work at it, or has been */
+    gint *taken;             /* [n_groups] atomic (turn.c) */
     gsize cap_pull;
-    uint32_t cap_taken;
-    Pulled *pulled;
-    uint32_t n_pulled, cap_pulled;
-    uint32_t n_live; /* sources that pull */
+    uint32_t n_taken, cap_taken;
+    Pace pace;
     bool drawn;      /* pulled[] speaks of the coming step already */
     uint32_t *fresh; /* nodes born in this step */
     uint32_t n_fresh, cap_fresh;
@@ -178,6 +184,14 @@ struct Simulation {
     bool looked;     /* where children have room was looked at before any was born */
     Boxtree fresh_tree;
     Points fresh_points; /* the same, unless there are many */
+    /* What threads write while others look at the above: apart from it, as each time it would have to be sent to them anew. */
+    char apart[64];
+    Pulled *pulled;
+    uint32_t n_pulled, cap_pulled;
+    uint32_t n_live; /* sources that pull */
+    uint32_t n_removed;
+    Arrival *arrival;
+    uint32_t n_arrivals, cap_arrivals, unused_arrival;
     gint seen; /* sources that looked at a step's nodes; atomic */
     SimulationCounts counts;
 };
@@ -198,6 +212,7 @@ void given_appear(Simulation *s, void (*fresh)(Simulation *s, uint32_t node)); /
 gboolean sources_prepare(Simulation *s, GError **error);
 void sources_place(Simulation *s);          /* the step's new sources */
 bool sources_waiting(const Simulation *s);
+static inline bool sources_need_room(const Simulation *s) { return s->def.placement == PLACEMENT_DARTS; } /* those that come look how near others are */
 bool sources_expected(const Simulation *s); /* darts may still find room */
 bool sources_are_many(double darts);        /* so many a step are worth waiting for when the blade does not grow */
 
@@ -227,7 +242,8 @@ typedef struct {
 } Few;
 
 /* sight.c */
-void fresh_prepare(Simulation *s);                         /* lists them */
+void fresh_prepare(Simulation *s);                         /* lists them; a tree of them, if one is needed */
+void fresh_nearest(const Simulation *s, const Field *f, Vec2 p, uint32_t *near, double *near2); /* as boxtree_nearest */
 void squares_prepare(const Simulation *s, const Group *g); /* shows them to the squares of a group */
 
 /* The fresh nodes that a crowd looks at. */
@@ -238,20 +254,25 @@ typedef struct {
     Few rival;   /* closed: those that the nearest one need not exclude */
     double apart2[FEW][SIGHT_GUARDS]; /* squared distances of rivals from the first of the nearest */
 } Sight;
+uint32_t crowd_sole(const Simulation *s, const Crowd *c); /* the one that is nearest to all of them; NO_POINT: perhaps there are several */
+bool crowd_has_rivals(const Simulation *s, const Crowd *c, uint32_t node, Sight *room); /* closed: of the one that is nearest to all of them */
 bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight); /* FALSE when there are too many, and each source must look for itself */
 
 /* Where the pulls of slots go: that of slot k to x[k - first], y[k - first]. NULL: nobody asks for them. */
 typedef struct {
     double *x, *y;
     uint32_t first;
+    bool at_once; /* they are summed up by the same thread at once */
 } Draw;
 
 /* lone.c */
 void crowd_rest(Simulation *s, Crowd *c, uint32_t node); /* they all pull one node */
 void crowd_wake(Simulation *s, Crowd *c);                /* brings near[] and near2[] up to date */
 void crowds_wake(Simulation *s, uint32_t node);          /* those that pull the node; NO_POINT: all */
-bool crowd_turns(const Simulation *s, const Crowd *c, const Sight *sight); /* all of a lone one turn to the node in sight, and keep together */
-uint32_t crowd_draw_lone(const Simulation *s, Crowd *c, const Draw *draw); /* renews most2; returns how many there are */
+bool crowd_turns(const Simulation *s, const Crowd *c, uint32_t node); /* all of a lone one turn to the node, and keep together, unless rivals part them */
+uint32_t crowd_draw_lone(const Simulation *s, Crowd *c, const Draw *draw); /* renews most2, or leaves both to pulls_sum; returns how many there are */
+/* Adds pulls of n sources towards p, one after the other, to a sum; returns the largest squared distance, or least2. */
+double lone_sum(const Vec2 *place, uint32_t n, Vec2 p, Vec2 *sum, double least2);
 
 /* look.c; what the sources of a crowd pull after it is drawn, too */
 /* Shows the fresh nodes to a crowd; returns how many sources they may concern. */

@@ -5,24 +5,28 @@
 
 #include "sim/state.h"
 
-enum { RING = 3 * CROWD_SIDE, LANES_MOST = 64 };
+enum { RING = 3 * CROWD_SIDE, ROOMS = RING + CROWD_SIDE, LANES_MOST = 64 };
 
 typedef struct {
     Simulation *s;
     bool look, remove, pull;
-    uint32_t lanes; /* threads that may come; each has every lanes-th group, as long as it can keep up */
+    uint32_t lanes; /* threads that may come */
     uint32_t ring;  /* bands that may wait, drawn */
-    uint32_t rooms; /* for their pulls; one where none has to wait */
+    uint32_t rooms; /* a lane's, for their pulls; one where none has to wait */
     gint settled __attribute__((aligned(64))); /* bands that no longer do; atomic */
 } Turn;
+
+enum { NO_ROOM = UINT8_MAX };
 
 /* A thread's part. */
 typedef struct {
     Turn *t;
-    uint32_t next; /* group, unless another has taken it */
+    uint32_t lane;
+    uint32_t next; /* no group of the lane's own before it is free */
     uint32_t seen; /* sources that the fresh nodes may concern */
     uint32_t n_waiting;
-    bool waiting[RING * LANES_MOST]; /* drawn, not settled: band b at b % ring */
+    uint8_t waiting[RING * LANES_MOST]; /* the room of band b at b % ring, if it is drawn and not settled, else NO_ROOM */
+    uint8_t room[ROOMS];                /* those from n_waiting on are free; the last one that became so comes first, while it is in the cache */
     Sight sight;
 } Lane;
 
@@ -33,13 +37,14 @@ static void remove_all(Simulation *s, uint32_t first, uint32_t last)
             source_remove_reached(s, k);
 }
 
-static void settle(Turn *t, uint32_t b)
+static gsize room_at(const Lane *l, uint32_t room) { return ((gsize)l->lane * l->t->rooms + room) * l->t->s->crowds.longest; }
+
+static void settle(const Lane *l, uint32_t b, uint32_t room)
 {
-    Simulation *s = t->s;
+    Simulation *s = l->t->s;
     const Band *band = &s->crowds.band[b];
-    gsize at = (gsize)(b % t->rooms) * s->crowds.longest;
-    if (t->pull)
-        pulls_sum(s, band, t->remove, s->pull_x + at, s->pull_y + at);
+    if (l->t->pull)
+        pulls_sum(s, band, l->t->remove, s->pull_x + room_at(l, room), s->pull_y + room_at(l, room));
     else
         remove_all(s, band->first, band->last);
 }
@@ -50,11 +55,12 @@ static void settle_waiting(Lane *l)
     Turn *t = l->t;
     while (l->n_waiting) {
         uint32_t b = (uint32_t)g_atomic_int_get(&t->settled);
-        if (!l->waiting[b % t->ring])
+        uint8_t *waiting = &l->waiting[b % t->ring];
+        if (*waiting == NO_ROOM)
             return;
-        settle(t, b);
-        l->waiting[b % t->ring] = false;
-        l->n_waiting--;
+        settle(l, b, *waiting);
+        l->room[--l->n_waiting] = *waiting;
+        *waiting = NO_ROOM;
         g_atomic_int_set(&t->settled, (gint)b + 1);
     }
 }
@@ -64,15 +70,15 @@ static void take_band(Lane *l, uint32_t b)
     Turn *t = l->t;
     Simulation *s = t->s;
     const Band *band = &s->crowds.band[b];
-    gsize at = (gsize)(b % t->rooms) * s->crowds.longest;
+    uint8_t room = l->room[l->n_waiting++];
     bool wanted = t->pull && s->veins.n;
-    Draw draw = {wanted ? s->pull_x + at : NULL, wanted ? s->pull_y + at : NULL, band->first};
+    Draw draw = {wanted ? s->pull_x + room_at(l, room) : NULL, wanted ? s->pull_y + room_at(l, room) : NULL, band->first, false};
+    draw.at_once = wanted && (uint32_t)g_atomic_int_get(&t->settled) == b;
     for (uint32_t c = band->first_crowd; t->look && c < band->last_crowd; c++)
         l->seen += crowd_look(s, &s->crowds.crowd[c], &l->sight, &draw);
     if (!t->look)
         pulls_draw(s, band->first, band->last, &draw);
-    l->waiting[b % t->ring] = true;
-    l->n_waiting++;
+    l->waiting[b % t->ring] = room;
     settle_waiting(l);
 }
 
@@ -85,19 +91,33 @@ static void take_group(Lane *l, uint32_t g)
         take_band(l, b);
 }
 
-/* The next group of a lane, or, when that is too far ahead or there is none, the last one free of those whose bands may wait. n_groups: none. */
+/* What taken[] says of a group: whether a thread is at work at it, or has been in this turn; and whose it is (mod the number of lanes). It is its
+ * taker's in the next turn, too, so that sources are mostly in the cache of the one who looks at them. */
+enum { TAKEN = 1 << 30 };
+
+static bool is_free(const Turn *t, uint32_t g) { return !(g_atomic_int_get(&t->s->taken[g]) & TAKEN); }
+
+static bool take(const Lane *l, uint32_t g)
+{
+    gint *taken = &l->t->s->taken[g], was = g_atomic_int_get(taken);
+    return !(was & TAKEN) && g_atomic_int_compare_and_exchange(taken, was, (gint)l->lane | TAKEN);
+}
+
+/* A lane's next group, or, when that is too far ahead or there is none, the last one free of those whose bands may wait. n_groups: none. With RING
+ * bands waiting a lane takes no other; when all do, one of theirs is the next to be settled. */
 static uint32_t next_group(Lane *l)
 {
     const Turn *t = l->t;
     const Crowds *c = &t->s->crowds;
-    gint *taken = t->s->taken;
     uint32_t end = (uint32_t)g_atomic_int_get(&t->settled) + t->ring, last = c->n_groups;
-    while (l->next < c->n_groups && g_atomic_int_get(&taken[l->next]))
-        l->next += t->lanes;
+    if (l->n_waiting >= RING)
+        return c->n_groups;
+    while (l->next < c->n_groups && (!is_free(t, l->next) || (uint32_t)g_atomic_int_get(&t->s->taken[l->next]) % t->lanes != l->lane))
+        l->next++;
     if (l->next < c->n_groups && c->group[l->next].last_band <= end)
         return l->next;
     while (last-- > 0)
-        if (c->group[last].last_band <= end && !g_atomic_int_get(&taken[last]))
+        if (c->group[last].last_band <= end && is_free(t, last))
             return last;
     return c->n_groups;
 }
@@ -105,45 +125,85 @@ static uint32_t next_group(Lane *l)
 static bool all_taken(const Turn *t)
 {
     for (uint32_t g = t->s->crowds.n_groups; g-- > 0;)
-        if (!g_atomic_int_get(&t->s->taken[g]))
+        if (is_free(t, g))
             return false;
     return true;
 }
 
 static void take_lane(uint32_t first, uint32_t last, void *user)
 {
-    enum { PATIENCE = 20000 };
+    enum { POLITENESS = 256, PATIENCE = 4096 };
     Turn *t = user;
     Lane l;
     l.t = t;
-    l.next = first;
-    l.seen = l.n_waiting = 0;
-    memset(l.waiting, 0, t->ring);
+    l.lane = first;
+    l.next = l.seen = l.n_waiting = 0;
+    memset(l.waiting, NO_ROOM, t->ring);
+    for (uint8_t i = 0; i < ROOMS; i++)
+        l.room[i] = i;
     for (uint32_t i = 1; l.n_waiting || !all_taken(t); i++) {
         uint32_t g = next_group(&l);
         if (g < t->s->crowds.n_groups) {
-            if (g_atomic_int_compare_and_exchange(&t->s->taken[g], 0, 1))
+            if (take(&l, g))
                 take_group(&l, g);
             continue;
         }
         settle_waiting(&l);
-        if (i % PATIENCE == 0)
-            g_usleep(50); /* the one whose turn it is has no processor */
+        if (i % PATIENCE == 0) /* the one whose turn it is may have no processor */
+            g_usleep(50);
+        else if (i % POLITENESS == 0)
+            g_thread_yield();
     }
     g_atomic_int_add(&t->s->seen, (gint)l.seen); /* a sum: the order of the threads doesn't matter */
 }
 
-/* So few sources take less than a tenth of a millisecond, and one thread is as fast as two. */
+/* So few sources take less than some tens of microseconds, and one thread is as fast as two. */
 static bool are_few(const Simulation *s)
 {
-    enum { OPEN = 8192, CLOSED = 4096 };
+    enum { OPEN = 4096, CLOSED = 2048 };
     return sources_alive(s) < (s->def.pattern == PATTERN_OPEN ? OPEN : CLOSED);
 }
 
-static void make_room(Simulation *s, uint32_t bands)
+/* Whether more threads are faster than one depends on how far from each other their caches are, and on what else the machine is at: where one is kept
+ * from going on, all wait for it. So one does some turns alone every so often; if it is faster, then some more, and ever more as long as it is.
+ * This tells how long a turn takes, not what comes of it. */
+static void pace_note(Pace *p, gint64 time, uint32_t sources)
 {
+    enum { TRIAL = 8, NEW = 2 /* not counted: until all are awake */, SHARED_MOST = 256, SHARED_LEAST = 32, ALONE_LEAST = 32, ALONE_MOST = 1024 };
+    if (p->shared == 0) {
+        p->shared = SHARED_MOST;
+        p->alone = ALONE_LEAST;
+    }
+    if (++p->turns > NEW) {
+        p->time += (double)time;
+        p->sources += sources;
+    }
+    if (p->turns < (p->kind == PACE_SHARED ? p->shared : p->kind == PACE_TRIAL ? TRIAL : p->alone))
+        return;
+    double cost = p->time / p->sources;
+    if (p->kind == PACE_SHARED) {
+        p->cost = cost;
+        p->kind = PACE_TRIAL;
+    } else if (p->kind == PACE_TRIAL && cost < p->cost) {
+        p->shared = SHARED_LEAST;
+        p->alone = MIN(2 * p->alone, ALONE_MOST);
+        p->kind = PACE_ALONE;
+    } else {
+        if (p->kind == PACE_TRIAL) {
+            p->shared = SHARED_MOST;
+            p->alone = ALONE_LEAST;
+        }
+        p->kind = PACE_SHARED;
+    }
+    p->turns = 0;
+    p->time = p->sources = 0.0;
+}
+
+static void make_room(const Turn *t)
+{
+    Simulation *s = t->s;
     const Crowds *c = &s->crowds;
-    gsize wanted = (gsize)bands * c->longest;
+    gsize wanted = (gsize)t->lanes * t->rooms * c->longest;
     if (s->cap_pull < wanted) {
         s->cap_pull = wanted + wanted / 2;
         s->pull_x = g_renew(double, s->pull_x, s->cap_pull);
@@ -153,23 +213,25 @@ static void make_room(Simulation *s, uint32_t bands)
         s->cap_taken = 2 * c->n_groups;
         s->taken = g_renew(gint, s->taken, s->cap_taken);
     }
+    for (; s->n_taken < c->n_groups; s->n_taken++)
+        s->taken[s->n_taken] = (gint)s->n_taken;
     for (uint32_t g = 0; g < c->n_groups; g++)
-        s->taken[g] = 0;
+        s->taken[g] &= ~TAKEN;
 }
 
 void sources_turn(Simulation *s, bool look, bool remove, bool pull)
 {
     Turn t = {.s = s, .look = look, .remove = remove, .pull = pull};
-    t.lanes = are_few(s) ? 1 : MIN(pool_threads(s->pool), LANES_MOST);
+    bool many = pool_threads(s->pool) > 1 && !are_few(s);
+    gint64 start = many ? g_get_monotonic_time() : 0;
+    t.lanes = !many || s->pace.kind != PACE_SHARED ? 1 : MIN(pool_threads(s->pool), LANES_MOST);
     t.ring = RING * t.lanes;
-    t.rooms = t.lanes == 1 ? 1 : t.ring;
+    t.rooms = t.lanes == 1 ? 1 : ROOMS;
     if (!look || !pull)
         crowds_wake(s, NO_POINT);
-    if (look) {
-        boxtree_build(&s->fresh_tree, s->veins.pos, s->fresh, s->n_fresh);
+    if (look)
         fresh_prepare(s);
-    }
-    make_room(s, t.rooms);
+    make_room(&t);
     if (pull) {
         s->n_pulled = s->n_live = 0;
         s->drawn = true;
@@ -177,4 +239,6 @@ void sources_turn(Simulation *s, bool look, bool remove, bool pull)
     s->seen = 0;
     pool_for(s->pool, t.lanes, 1, take_lane, &t);
     s->counts.updates += (uint64_t)s->seen;
+    if (many && look)
+        pace_note(&s->pace, g_get_monotonic_time() - start, sources_alive(s));
 }

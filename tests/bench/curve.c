@@ -11,6 +11,7 @@ static double throw_darts(Simulation *s, uint32_t n)
     s->def.birth_distance_sources = 1.5;
     s->def.birth_distance_veins = 1.0;
     s->def.density = (double)n / s->blade->area;
+    sources_sort(s); /* their grid was not needed */
     uint64_t before = s->counts.darts;
     blade_advance(s->blade);
     double start = now();

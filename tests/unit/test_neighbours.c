@@ -537,6 +537,41 @@ static void check_places(const Points *p, const Vec2 *pos)
     }
 }
 
+/* The one nearest to a place, and the only one that is nearest to places of the box. Returns whether there is such a one. */
+static bool check_sole(const Points *p, const Vec2 *pos, Box2 b, double bound2)
+{
+    uint32_t sole = points_sole(p, b), beaten = 0, v;
+    for (int i = 0; i <= 4; i++)
+        for (int j = 0; j <= 4; j++) {
+            Vec2 q = vec2(b.x0 + (b.x1 - b.x0) * i / 4, b.y0 + (b.y1 - b.y0) * j / 4);
+            uint32_t best = UINT32_MAX, found = UINT32_MAX;
+            double best2 = bound2, found2 = bound2;
+            for (uint32_t k = 0; k < p->n; k++)
+                if (plain_dist2(pos[p->v[k]], q) < best2) {
+                    best = p->v[k];
+                    best2 = plain_dist2(pos[best], q);
+                }
+            points_nearest(p, q, &found, &found2);
+            g_assert_cmpuint(found, ==, best);
+            g_assert_true(found2 == best2);
+            for (uint32_t k = 0; k < p->n && sole != UINT32_MAX; k++)
+                g_assert_true(p->v[k] == sole || plain_dist2(pos[sole], q) < plain_dist2(pos[p->v[k]], q));
+        }
+    /* the one nearest to a corner, if it is the nearest to all others by far */
+    const Vec2 corner[4] = {{b.x0, b.y0}, {b.x1, b.y0}, {b.x0, b.y1}, {b.x1, b.y1}};
+    double near2 = HUGE_VAL, margin = 1e-6 * (1.0 + plain_dist2(corner[0], corner[3]));
+    points_nearest(p, corner[0], &v, &near2);
+    for (uint32_t k = 0; k < p->n; k++) {
+        bool all = true;
+        for (int c = 0; c < 4; c++)
+            all &= plain_dist2(pos[v], corner[c]) * (1.0 + 1e-6) + margin < plain_dist2(pos[p->v[k]], corner[c]);
+        beaten += all;
+    }
+    if (p->n && beaten == p->n - 1)
+        g_assert_cmpuint(sole, ==, v);
+    return sole != UINT32_MAX;
+}
+
 /* Every point that is nearest to one of some places in the box must be among those found. Returns how many there are. */
 static uint32_t check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, Box2 b, double bound2, uint32_t *out)
 {
@@ -570,7 +605,9 @@ static uint32_t check_nearest_to(const Boxtree *t, const Vec2 *pos, uint32_t n, 
         for (uint32_t k = 0; k < n; k++)
             all_of[k] = 2 * k + 1;
         Points all = points_in(&all_room, all_of, n, pos);
-        bool any = false;
+        bool any = false, sole = check_sole(&all, pos, b, bound2);
+        g_assert_true(tight.n != 1 || n != 1 || sole);
+        g_assert_true(!sole || tight.n <= 1);
         for (uint32_t k = 0; k < n; k++)
             any |= box_dist2(b, pos[all_of[k]]) <= bound2;
         g_assert_cmpint(points_nearest_to(&all, b, bound2, &all) > 0, ==, any);
