@@ -18,6 +18,17 @@ void bins_init(Bins *b, uint32_t width, uint32_t height, uint32_t n, Capsule (*s
                const void *user);
 void bins_clear(Bins *b);
 
+/* Asks memory for what some turns later comes up of a tile's strokes, items i … to - 1, which lie far apart: `size` bytes each from `at` on. */
+static inline void bins_ahead(const Bins *b, uint32_t i, uint32_t to, const void *at, uint32_t size)
+{
+    enum { AHEAD = 6, LINE = 64 };
+    if (to - i <= AHEAD)
+        return;
+    const char *stroke = (const char *)at + (uint64_t)b->item[i + AHEAD] * size;
+    for (uint32_t k = 0; k < size; k += LINE)
+        __builtin_prefetch(stroke + k);
+}
+
 /* Pixel bounds of a tile. */
 typedef struct {
     uint32_t x0, y0, x1, y1;

@@ -104,15 +104,19 @@ static void cover_tiles(uint32_t first, uint32_t last, void *user)
     union_init(&t->area, p->circle);
     for (uint32_t tile = first; tile < last; tile++) {
         uint32_t from = p->bins.start[tile], to = p->bins.start[tile + 1];
-        if (from == to)
-            continue;
         TileBox box = bins_tile(&p->bins, tile);
+        if (from == to) {
+            field_clear_tile(p, &p->cover, box);
+            continue;
+        }
         memset(t->full, 0, sizeof t->full);
         memset(t->head, 0xFF, sizeof t->head);
         t->n_links = 0;
         t->has_blade = false;
-        for (uint32_t i = from; i < to; i++)
+        for (uint32_t i = from; i < to; i++) {
+            bins_ahead(&p->bins, i, to, p->strokes->v, sizeof *p->strokes->v);
             tile_enter(t, box, p->bins.item[i]);
+        }
         for (uint32_t y = box.y0; y < box.y1; y++) {
             const float *blade = p->net->margin != NULL ? field_row(p, &p->blade, y) : NULL;
             float *out = field_row(p, &p->cover, y);

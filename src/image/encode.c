@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "geom/dmath.h"
+#include "geom/wide.h"
 
 /* The sRGB curve (IEC 61966-2-1) at CURVE + 1 even steps; straight lines between them err by less than 2e-6. */
 enum { CURVE = 16384 };
@@ -59,7 +60,7 @@ static inline int32_t to_level(double v, double top)
 }
 
 /* Do n values all have the bits of the first? What surrounds the blade does. */
-static bool all_same(const float *in, uint32_t n)
+static inline bool all_same(const float *in, uint32_t n)
 {
     uint32_t first, differ = 0;
     memcpy(&first, in, sizeof first);
@@ -71,7 +72,7 @@ static bool all_same(const float *in, uint32_t n)
     return differ == 0;
 }
 
-static uint8_t *put_levels(const int32_t *restrict level, uint32_t n, int depth, uint8_t *restrict out)
+static inline uint8_t *put_levels(const int32_t *restrict level, uint32_t n, int depth, uint8_t *restrict out)
 {
     if (depth == 8) {
         for (uint32_t i = 0; i < n; i++)
@@ -116,7 +117,7 @@ static void colour_row(const Encoder *e, const float *in, uint32_t n, double top
     }
 }
 
-static void data_row(const Encoder *e, const float *in, uint32_t n, double low, double gain, double top, uint8_t *out)
+WIDE static void data_row(const Encoder *e, const float *in, uint32_t n, double low, double gain, double top, uint8_t *out)
 {
     int32_t level[BLOCK];
     for (uint32_t first = 0; first < n; first += BLOCK, in += BLOCK) {
@@ -172,7 +173,7 @@ uint16_t encode_half(float value)
     return to_half(value);
 }
 
-void encode_halves(const float *restrict in, uint32_t n, uint16_t *restrict out)
+WIDE void encode_halves(const float *restrict in, uint32_t n, uint16_t *restrict out)
 {
     for (uint32_t first = 0; first < n; first += BLOCK, in += BLOCK, out += BLOCK) {
         uint32_t count = MIN(n - first, (uint32_t)BLOCK), known = all_same(in, count) ? 1 : count;

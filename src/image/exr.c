@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "geom/wide.h"
 #include "image/deflate.h"
 #include "image/encode.h"
 #include "image/file.h"
@@ -205,7 +206,7 @@ static void fill_raw(const Writer *w, uint32_t y0, uint32_t rows, uint16_t *out,
 }
 
 /* As OpenEXR's ZIP has it: first all bytes of even places, then those of odd ones, each less the one before it. */
-static void predict(const uint16_t *restrict in, gsize n, uint8_t *restrict out)
+WIDE static void predict(const uint16_t *restrict in, gsize n, uint8_t *restrict out)
 {
     uint8_t *restrict high = out + n;
     out[0] = (uint8_t)in[0];

@@ -30,9 +30,14 @@ typedef struct {
     uint32_t x, y, side;
 } Square;
 
+/* A stroke as lists have it. */
+typedef struct {
+    float x, y, inner, outer;
+} Near;
+
 struct Nearest {
     const Bins *bins;
-    List near; /* each stroke */
+    Near *near; /* each stroke */
     StrokeFn shape;
     const void *user;
     double limit;
@@ -65,14 +70,11 @@ Nearest *nearest_new(const Bins *bins, uint32_t n, StrokeFn shape, const void *u
 {
     Nearest *f = g_new0(Nearest, 1);
     *f = (Nearest){.bins = bins, .shape = shape, .user = user, .limit = limit};
-    list_room(&f->near, MAX(n, 1));
+    f->near = g_new(Near, MAX(n, 1));
     for (uint32_t i = 0; i < n; i++) {
         const Capsule *k = shape(i, user);
         Vec2 m = vec_lerp(k->a, k->b, 0.5);
-        f->near.x[i] = (float)m.x;
-        f->near.y[i] = (float)m.y;
-        f->near.inner[i] = (float)(0.5 * (k->ra + k->rb));
-        f->near.outer[i] = (float)(0.5 * k->length + MAX(k->ra, k->rb));
+        f->near[i] = (Near){(float)m.x, (float)m.y, (float)(0.5 * (k->ra + k->rb)), (float)(0.5 * k->length + MAX(k->ra, k->rb))};
     }
     return f;
 }
@@ -81,7 +83,7 @@ void nearest_free(Nearest *f)
 {
     if (f == NULL)
         return;
-    list_clear(&f->near);
+    g_free(f->near);
     g_free(f);
 }
 
@@ -182,14 +184,17 @@ static void gather(const Nearest *f, Block k, List *l)
 {
     uint32_t n = 0;
     list_room(l, block_count(f->bins, k));
-    for (uint32_t y = k.y0; y < k.y1; y++)
-        for (uint32_t at = f->bins->start[y * f->bins->nx + k.x0]; at < f->bins->start[y * f->bins->nx + k.x1]; at++) {
-            uint32_t i = l->i[n] = f->bins->item[at];
-            l->x[n] = f->near.x[i];
-            l->y[n] = f->near.y[i];
-            l->inner[n] = f->near.inner[i];
-            l->outer[n++] = f->near.outer[i];
+    for (uint32_t y = k.y0; y < k.y1; y++) {
+        uint32_t to = f->bins->start[y * f->bins->nx + k.x1];
+        for (uint32_t at = f->bins->start[y * f->bins->nx + k.x0]; at < to; at++) {
+            bins_ahead(f->bins, at, to, f->near, sizeof *f->near);
+            Near s = f->near[l->i[n] = f->bins->item[at]];
+            l->x[n] = s.x;
+            l->y[n] = s.y;
+            l->inner[n] = s.inner;
+            l->outer[n++] = s.outer;
         }
+    }
     l->n = n;
 }
 
@@ -341,6 +346,17 @@ static void fill_square(const Fill *l, const Square *q, Scratch *s, uint32_t lev
     }
 }
 
+/* What is not wanted stays 0. */
+static void clear_tile(const Fill *l, TileBox box)
+{
+    for (uint32_t y = MAX(box.y0, l->y0); y < MIN(box.y1, l->y1); y++) {
+        gsize at = (gsize)(y - l->y0) * l->f->bins->width + box.x0;
+        memset(l->distance + at, 0, (box.x1 - box.x0) * sizeof *l->distance);
+        if (l->which != NULL)
+            memset(l->which + at, 0, (box.x1 - box.x0) * sizeof *l->which);
+    }
+}
+
 static void fill_tiles(uint32_t first, uint32_t last, void *user)
 {
     const Fill *l = user;
@@ -349,6 +365,8 @@ static void fill_tiles(uint32_t first, uint32_t last, void *user)
     for (uint32_t i = first; i < last; i++) {
         TileBox box = bins_tile(b, l->y0 / TILE * b->nx + i);
         Square q = {box.x0, box.y0, TILE};
+        if (l->where != NULL)
+            clear_tile(l, box);
         if (!wanted(l, &q))
             continue;
         choose_tile(l->f, &q, &s);

@@ -16,7 +16,7 @@ void nearest_free(Nearest *q);
 
 /* For each pixel of rows y0 … y1-1, multiples of TILE but for the image's last, the distance from its centre to the nearest
  * stroke, negative inside, and at most `limit`; and which stroke it is, all bits set for none within the limit. Pixels where
- * `where` is 0 are left as they are. Arrays begin at row y0; `where` and `which` may be NULL. */
+ * `where` is 0 are given 0. Arrays begin at row y0; `where` and `which` may be NULL. */
 void nearest_fill(const Nearest *q, Pool *pool, uint32_t y0, uint32_t y1, const float *where, float *distance, uint32_t *which);
 
 #endif

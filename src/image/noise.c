@@ -3,6 +3,7 @@
 #include <glib.h>
 
 #include "geom/random.h"
+#include "geom/wide.h"
 
 void noise_init(Noise *n, uint64_t seed, uint32_t field, double wavelength, Box2 region, double pixels_per_segment)
 {
@@ -29,7 +30,7 @@ void noise_clear(Noise *n)
     g_free(n->gradient);
 }
 
-static double fade(double t)
+static inline double fade(double t)
 {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
@@ -39,7 +40,7 @@ typedef struct {
     double at0, slope0, at1, slope1; /* of the left side's, at it; of the right side's, at it */
 } Cut;
 
-static Cut cut_at(const Noise *n, uint32_t ix, uint32_t iy, double y)
+static inline Cut cut_at(const Noise *n, uint32_t ix, uint32_t iy, double y)
 {
     const float *g = n->gradient + 2 * ((gsize)iy * n->nx + ix), *h = g + 2 * (gsize)n->nx;
     double v = fade(y), low0 = (double)g[1] * y, high0 = (double)h[1] * (y - 1.0), low1 = (double)g[3] * y, high1 = (double)h[3] * (y - 1.0);
@@ -47,7 +48,7 @@ static Cut cut_at(const Noise *n, uint32_t ix, uint32_t iy, double y)
                  (double)g[2] + (double)(h[2] - g[2]) * v};
 }
 
-static double across(const Cut *c, double x)
+static inline double across(const Cut *c, double x)
 {
     double left = c->at0 + c->slope0 * x, right = c->at1 + c->slope1 * (x - 1.0);
     return left + (right - left) * fade(x);
@@ -83,7 +84,7 @@ static uint32_t cell_end(const Noise *n, double x0, double step, uint32_t i, uin
     return end;
 }
 
-void noise_row(const Noise *n, Vec2 start, double step, uint32_t first, uint32_t last, float *out)
+WIDE void noise_row(const Noise *n, Vec2 start, double step, uint32_t first, uint32_t last, float *out)
 {
     if (!(n->weight > 0.0))
         return;

@@ -61,8 +61,11 @@ static void claim_tiles(uint32_t first, uint32_t last, void *user)
         TileBox box = bins_tile(&p->bins, tile);
         for (int i = 0; i < TILE * TILE; i++)
             best[i].stroke = OWNER_NONE;
-        for (uint32_t i = p->bins.start[tile]; i < p->bins.start[tile + 1]; i++)
+        uint32_t to = p->bins.start[tile + 1];
+        for (uint32_t i = p->bins.start[tile]; i < to; i++) {
+            bins_ahead(&p->bins, i, to, p->strokes->v, sizeof *p->strokes->v);
             claim_tile(p, box, p->bins.item[i], best);
+        }
         for (uint32_t y = box.y0; y < box.y1; y++) {
             uint32_t *out = label_row(p, &p->owner, y);
             for (uint32_t x = box.x0; x < box.x1; x++) {

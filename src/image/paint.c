@@ -217,30 +217,40 @@ void painter_free(Painter *p)
 
 /* ---- bands ---- */
 
+typedef struct {
+    const Painter *p;
+    Field *field[N_FIELDS];
+    uint32_t top, bottom; /* the rows at hand from now on */
+} Move;
+
+static void move_fields(uint32_t first, uint32_t last, void *user)
+{
+    const Move *m = user;
+    gsize row = (gsize)m->p->width * sizeof(float);
+    for (uint32_t i = first; i < last; i++) {
+        Field *f = m->field[i];
+        if (f->px == NULL)
+            continue;
+        bool keep = m->top >= m->p->top && f->done > m->top;
+        f->done = keep ? MIN(f->done, m->bottom) : m->top;
+        if (keep)
+            memmove(f->px, (char *)f->px + (m->top - m->p->top) * row, (f->done - m->top) * row);
+        f->px = g_realloc(f->px, (m->bottom - m->top) * row);
+    }
+}
+
 void painter_band(Painter *p, uint32_t y0, uint32_t y1)
 {
     uint32_t reach = arch_reach(p) + 1 + p->surround; /* normals look one row further */
-    uint32_t top = (y0 > reach ? y0 - reach : 0) / TILE * TILE;
-    uint32_t bottom = MIN((y1 + reach + TILE - 1) / TILE * TILE, p->rows);
-    Field *field[N_FIELDS];
+    Move m = {.p = p, .top = (y0 > reach ? y0 - reach : 0) / TILE * TILE, .bottom = MIN((y1 + reach + TILE - 1) / TILE * TILE, p->rows)};
     drop_kept(p);
-    list_fields(p, field);
-    for (int i = 0; i < N_FIELDS; i++) {
-        Field *f = field[i];
-        if (f->px == NULL)
-            continue;
-        gsize row = (gsize)p->width * sizeof(float);
-        bool keep = top >= p->top && f->done > top;
-        f->done = keep ? MIN(f->done, bottom) : top;
-        if (keep)
-            memmove(f->px, (char *)f->px + (top - p->top) * row, (f->done - top) * row);
-        f->px = g_realloc(f->px, (bottom - top) * row);
-    }
-    p->arch.done = top; /* it has no rows to spare */
+    list_fields(p, m.field);
+    p->arch.done = p->top; /* it has no rows to spare */
+    pool_for(p->pool, N_FIELDS, 1, move_fields, &m);
     p->y0 = y0;
     p->y1 = y1;
-    p->top = top;
-    p->bottom = bottom;
+    p->top = m.top;
+    p->bottom = m.bottom;
 }
 
 uint32_t field_begin(const Painter *p, Field *f)
@@ -250,9 +260,14 @@ uint32_t field_begin(const Painter *p, Field *f)
         f->done = p->top;
     }
     uint32_t from = f->done;
-    memset(field_row(p, f, from), 0, (gsize)(p->bottom - from) * p->width * sizeof(float));
     f->done = p->bottom;
     return from;
+}
+
+void field_clear_tile(const Painter *p, const Field *f, TileBox box)
+{
+    for (uint32_t y = box.y0; y < box.y1; y++)
+        memset(field_row(p, f, y) + box.x0, 0, (box.x1 - box.x0) * sizeof(float));
 }
 
 /* A stroke with room for the pixels beside it. */
@@ -366,7 +381,7 @@ void painter_tiles(Painter *p, const Bins *bins, uint32_t from, LoopFn fn, void 
 /* What the leaf as a whole gives to maps, longest to make first. */
 enum { READY_AREOLES, READY_STROKES, READY_NOISE, N_READY };
 
-static void strokes_ready(Painter *p, bool shaped)
+void painter_strokes_ready(Painter *p, bool shaped)
 {
     if (shaped)
         make_strokes(p);
@@ -389,7 +404,7 @@ static void make_ready(uint32_t first, uint32_t last, void *user)
         if (i == READY_AREOLES && p->expected[MAP_AREOLE])
             areole_map_ready(p);
         else if (i == READY_STROKES && (shaped || veins))
-            strokes_ready(p, shaped);
+            painter_strokes_ready(p, shaped);
         else if (i == READY_NOISE && looks)
             painter_noise_ready(p);
 }

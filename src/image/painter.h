@@ -90,16 +90,20 @@ const float *painter_arch(Painter *p);
 void painter_relief(Painter *p); /* bulge, crease and nearness */
 void painter_noise(Painter *p);
 
-/* What some of them need of the leaf as a whole; with one thread each, and the first two one after the other. */
+/* What some of them need of the leaf as a whole, by one thread each. */
 void painter_ridges_ready(Painter *p);
 void painter_away_ready(Painter *p);
 void painter_noise_ready(Painter *p);
+void painter_strokes_ready(Painter *p, bool shaped); /* strokes for coverage and distances; ridges, too, when `shaped` */
 
 /* Rows around the painted ones that the arch depends on, pixels. */
 uint32_t arch_reach(const Painter *p);
 
-/* Makes room for the rows at hand and zeroes those not filled yet; the first of them, a multiple of TILE, or p->bottom. */
+/* Makes room for the rows at hand; the first of those not filled yet, a multiple of TILE, or p->bottom. What these hold is left from other rows. */
 uint32_t field_begin(const Painter *p, Field *f);
+
+/* Zeroes a tile of a field. */
+void field_clear_tile(const Painter *p, const Field *f, TileBox box);
 
 /* Row y of a field. */
 static inline float *field_row(const Painter *p, const Field *f, uint32_t y)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/wide.h"
 #include "image/deflate.h"
 #include "image/encode.h"
 #include "image/file.h"
@@ -178,7 +179,7 @@ static void put_bytes(Writer *w, const uint8_t *bytes, uint32_t n, gboolean last
 
 /* Takes from each byte that of the pixel on the left, above, or above on the left that is nearest to left + above - corner. Of all filters this one leaves
  * most to runs, also of labels (tests/bench/bench_paint.c, --compression). */
-static void filter_paeth(const uint8_t *row, const uint8_t *above, uint32_t n, uint32_t step, uint8_t *restrict out)
+WIDE static void filter_paeth(const uint8_t *row, const uint8_t *above, uint32_t n, uint32_t step, uint8_t *restrict out)
 {
     const uint8_t *left = row - step, *corner = above - step;
     for (uint32_t i = 0; i < n; i++) {

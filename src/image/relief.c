@@ -199,10 +199,15 @@ static void raise_tile(const Painter *p, uint32_t tile, Bulges *b)
 {
     TileBox box = bins_tile(&p->ridge_bins, tile);
     uint32_t from = p->ridge_bins.start[tile], to = p->ridge_bins.start[tile + 1];
-    if (from == to)
+    if (from == to) {
+        field_clear_tile(p, &p->bulge, box);
+        field_clear_tile(p, &p->crease, box);
+        field_clear_tile(p, &p->nearness, box);
         return;
+    }
     memset(b, 0, sizeof *b);
     for (uint32_t i = from; i < to; i++) {
+        bins_ahead(&p->ridge_bins, i, to, p->ridges->v, sizeof *p->ridges->v);
         Ridge r = ridge_of(p, &p->ridges->v[p->ridge_bins.item[i]]);
         raise_ridge(&r, box, b);
     }

@@ -2,6 +2,7 @@
 #include <glib.h>
 #include <string.h>
 
+#include "geom/wide.h"
 #include "image/painter.h"
 
 /* Pixels are worked on in short stretches of a row, quantity by quantity, in loops that vector instructions take in. */
@@ -85,7 +86,7 @@ static void spot_beyond(const View *v, Spots *s, uint32_t i, Vec2 at)
         s->noise[k][i] = noise_at(&p->noise[k], pos);
 }
 
-static void widen(const Painter *p, const Field *f, uint32_t x, uint32_t y, uint32_t n, double *out)
+static inline void widen(const Painter *p, const Field *f, uint32_t x, uint32_t y, uint32_t n, double *out)
 {
     const float *in = field_row(p, f, y) + x;
     for (uint32_t i = 0; i < n; i++)
@@ -93,7 +94,7 @@ static void widen(const Painter *p, const Field *f, uint32_t x, uint32_t y, uint
 }
 
 /* As if all pixels were of the blade. */
-static void spots_within(const View *v, uint32_t x, uint32_t y, Spots *s)
+WIDE static void spots_within(const View *v, uint32_t x, uint32_t y, Spots *s)
 {
     const Painter *p = v->p;
     const float *cover = field_row(p, &p->cover, y) + x, *blade = field_row(p, &p->blade, y) + x, *away = field_row(p, &p->away, y) + x;
@@ -180,7 +181,7 @@ static inline double tint(double c, double by)
 }
 
 /* Unevenness of the blade: brightness and, along with it, a drift between yellow and blue green. */
-static void unevenness(const Look *l, const Spots *s, Lane out[3])
+static inline void unevenness(const Look *l, const Spots *s, Lane out[3])
 {
     double strength = l->p->style.variation * (l->abaxial ? 0.6 : 1.0);
     const double *blotch = s->noise[BLOTCH], *patch = s->noise[PATCH], *mottle = s->noise[MOTTLE], *grain = s->noise[GRAIN];
@@ -198,7 +199,7 @@ static void unevenness(const Look *l, const Spots *s, Lane out[3])
 }
 
 /* A narrow band along the margin, of uneven width: how far its colour goes. FALSE when there is none of it. */
-static bool margin_band(const Look *l, const Spots *s, double *edge)
+static inline bool margin_band(const Look *l, const Spots *s, double *edge)
 {
     uint32_t any = 0;
     if (l->p->net->margin == NULL)
@@ -214,7 +215,7 @@ static bool margin_band(const Look *l, const Spots *s, double *edge)
 /* The blade takes on something of the veins' colour along large ones, and is most itself in the middle of a mesh, where
  * the mesophyll is thickest. Both are parts of the way from one colour to the other: where there is no contrast there is
  * neither. */
-static void lamina_colour(const Look *l, const Spots *s, Lane out[3])
+WIDE static void lamina_colour(const Look *l, const Spots *s, Lane out[3])
 {
     Lane uneven[3], edge;
     double by_halo = l->abaxial ? 0.07 : 0.12, by_fill = l->abaxial ? 0.03 : 0.07, by_edge = l->abaxial ? 0.5 : 0.7;
@@ -258,7 +259,7 @@ static void look_colour(const Look *l, const Spots *s, float *out)
 
 /* ---- other looks ---- */
 
-static void look_roughness(const Look *l, const Spots *s, double *out)
+WIDE static void look_roughness(const Look *l, const Spots *s, double *out)
 {
     double gloss = l->p->style.gloss, variation = l->p->style.variation;
     for (uint32_t i = 0; i < s->n; i++) {
@@ -270,7 +271,7 @@ static void look_roughness(const Look *l, const Spots *s, double *out)
 }
 
 /* Light is weakened by each thickness alike: 1 / (1 + x) stands in for the exponential. */
-static void look_translucency(const Look *l, const Spots *s, double *out)
+WIDE static void look_translucency(const Look *l, const Spots *s, double *out)
 {
     double lamina = MAX(l->p->style.thickness, 1e-3), variation = l->p->style.variation, rim = l->p->rim;
     for (uint32_t i = 0; i < s->n; i++) {

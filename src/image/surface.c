@@ -62,7 +62,7 @@ WIDE static void settle_stretch(const int32_t *restrict arch, const int32_t *res
 {
     for (uint32_t i = 0; i < n; i++) {
         float part = (float)((double)arch[i] / (double)(blade[i] > 0 ? blade[i] : 1));
-        out[i] = blade[i] > 0 ? part : out[i];
+        out[i] = blade[i] > 0 ? part : 0.0f;
     }
 }
 
@@ -108,7 +108,7 @@ typedef struct {
 enum { STRETCH = 64 };
 
 /* Height of pixels x … x + n - 1 of row y, segments; 0 where there is no blade. */
-static void heights(const Surface *s, uint32_t x, uint32_t y, uint32_t n, double *out)
+static inline void heights(const Surface *s, uint32_t x, uint32_t y, uint32_t n, double *out)
 {
     const Painter *p = s->p;
     const float *blade = field_row(p, &p->blade, y) + x, *bulge = field_row(p, &p->bulge, y) + x;
@@ -130,7 +130,7 @@ static bool has_blade(const float *blade, uint32_t n)
     return any != 0;
 }
 
-static void height_row(uint32_t y, void *user)
+WIDE static void height_row(uint32_t y, void *user)
 {
     const Surface *s = user;
     const Painter *p = s->p;
@@ -161,7 +161,7 @@ typedef struct {
     double height[STRETCH + 2], blade[STRETCH + 2];
 } Line;
 
-static void take_line(const Surface *s, uint32_t x, uint32_t y, uint32_t n, double *height, double *blade)
+static inline void take_line(const Surface *s, uint32_t x, uint32_t y, uint32_t n, double *height, double *blade)
 {
     const float *in = field_row(s->p, &s->p->blade, y) + x;
     heights(s, x, y, n, height);
@@ -170,7 +170,7 @@ static void take_line(const Surface *s, uint32_t x, uint32_t y, uint32_t n, doub
 }
 
 /* Of the row itself, with the pixels beside the stretch at 0 and n + 1; the image's last pixel is its own neighbour. */
-static void take_middle(const Surface *s, uint32_t x, uint32_t y, uint32_t n, Line *l)
+static inline void take_middle(const Surface *s, uint32_t x, uint32_t y, uint32_t n, Line *l)
 {
     uint32_t x1 = MIN(x + n + 1, s->p->width), from = x > 0 ? 0 : 1;
     take_line(s, x + from - 1, y, x1 - (x + from - 1), l->height + from, l->blade + from);
@@ -184,7 +184,7 @@ static void take_middle(const Surface *s, uint32_t x, uint32_t y, uint32_t n, Li
     }
 }
 
-static void normal_stretch(const Surface *s, uint32_t x, uint32_t y, uint32_t n, float *out)
+WIDE static void normal_stretch(const Surface *s, uint32_t x, uint32_t y, uint32_t n, float *out)
 {
     const Painter *p = s->p;
     Line up, mid, down;
@@ -227,7 +227,7 @@ static void normal_row(uint32_t y, void *user)
 
 /* Veins that stand beside a place keep light from it, small ones more than their height would say: what counts is how they look,
  * and that is lost when they are as faint as they are low. On top of them there is light. */
-static void occlusion_row(uint32_t y, void *user)
+WIDE static void occlusion_row(uint32_t y, void *user)
 {
     static const double open = 0.75; /* height from which on the flank of a vein is not dark, of its top's */
     const Surface *s = user;
@@ -241,7 +241,7 @@ static void occlusion_row(uint32_t y, void *user)
     }
 }
 
-static void thickness_row(uint32_t y, void *user)
+WIDE static void thickness_row(uint32_t y, void *user)
 {
     static const double thinnest = 0.45; /* at the margin, of the blade's */
     const Surface *s = user;

@@ -1,4 +1,6 @@
 /* Unevenness of the blade. */
+#include <string.h>
+
 #include "image/painter.h"
 
 /* Of the blade, or of the image when there is none. */
@@ -32,8 +34,13 @@ static void noise_of_row(uint32_t y, void *user)
     while (last > first && !(blade[last - 1] > 0.0f))
         last--;
     Vec2 start = vec2(p->frame.corner.x + 0.5 / p->frame.scale, p->frame.corner.y - (y + 0.5) / p->frame.scale);
-    for (int i = 0; i < N_NOISE; i++)
-        noise_row(&p->noise[i], start, 1.0 / p->frame.scale, first, last, field_row(p, &p->grain[i], y));
+    for (int i = 0; i < N_NOISE; i++) {
+        float *out = field_row(p, &p->grain[i], y);
+        uint32_t none = p->noise[i].weight > 0.0 ? first : p->width;
+        memset(out, 0, none * sizeof *out);
+        memset(out + MAX(none, last), 0, (p->width - MAX(none, last)) * sizeof *out);
+        noise_row(&p->noise[i], start, 1.0 / p->frame.scale, first, last, out);
+    }
 }
 
 void painter_noise(Painter *p)

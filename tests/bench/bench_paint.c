@@ -156,15 +156,15 @@ static void close_page(Page *g, Cost *c)
 }
 
 /* What maps share: first what is made once, then what is painted of each band. */
-static const char *const shared_name[] = {"(areoles)", "(strokes)", "(ridges)", "(blade)", "(coverage)", "(nearest vein)", "(owner)", "(margin)", "(bulges)", "(arch)"};
+static const char *const shared_name[] = {"(areoles)", "(strokes)", "(noise)", "(blade)", "(coverage)", "(nearest vein)", "(owner)", "(margin)", "(bulges)", "(arch)"};
 enum { N_SHARED = G_N_ELEMENTS(shared_name), N_ONCE = 3 };
 
 static void paint_shared(Painter *p, int i)
 {
     switch (i) {
     case 0: areole_map_ready(p); break;
-    case 1: painter_strokes(p); break;
-    case 2: painter_ridges_ready(p); break;
+    case 1: painter_strokes_ready(p, TRUE); break;
+    case 2: painter_noise_ready(p); break;
     case 3: painter_blade(p); break;
     case 4: painter_cover(p); break;
     case 5: painter_away(p); break;
@@ -215,7 +215,7 @@ static double apart(VenLeaf *leaf, uint32_t size, const char *dir)
             if (y == 0)
                 open_page(&page[id], id, plane, &frame, dir);
             write_page(&page[id], plane, &cost[id]);
-            plane_free(plane);
+            painter_give_back(painter, plane);
         }
     }
     painter_free(painter);

@@ -902,6 +902,14 @@ static void test_threads(void)
     network_free(net);
 }
 
+/* What is left in a plane that is given back must not come to light again. */
+static void give_back_spoilt(Painter *p, Plane *plane)
+{
+    for (gsize i = 0; i < (gsize)plane->width * plane->height * plane->channels; i++)
+        plane->px[i] = NAN;
+    painter_give_back(p, plane);
+}
+
 /* Bands of any height, in any order, hold the pixels that the whole has. */
 static void test_bands(void)
 {
@@ -929,7 +937,7 @@ static void test_bands(void)
                     g_assert_cmpuint(plane->height, ==, y1 - y0);
                     g_assert_true(plane->low == want[i]->low && plane->high == want[i]->high);
                     g_assert_true(memcmp(plane->px, want[i]->px + row * y0, row * (y1 - y0) * sizeof(float)) == 0);
-                    plane_free(plane);
+                    give_back_spoilt(p, plane);
                 }
             }
             painter_free(p);
@@ -1011,6 +1019,55 @@ static void test_nearest(void)
     g_free(distance);
     g_free(which);
     pool_free(pool);
+}
+
+/* Pixels that are not asked for have no distance, whatever was there. */
+static void test_nearest_where(void)
+{
+    enum { W = 75, H = 70 };
+    Capsule stroke = capsule_new(vec2(20, 30), 2.0, vec2(50, 40), 1.0);
+    Bins bins;
+    bins_init(&bins, W, H, 1, any_area, &stroke);
+    Pool *pool = pool_new(1);
+    Nearest *q = nearest_new(&bins, 1, any_stroke, &stroke, 1e6);
+    float *all = g_new(float, W * H), *some = g_new(float, W * H), *where = g_new0(float, W * H);
+    for (int i = 0; i < W * H; i++) {
+        some[i] = NAN;
+        where[i] = i % W < 40 && i % 3 == 0 ? 0.5f : 0.0f;
+    }
+    nearest_fill(q, pool, 0, H, NULL, all, NULL);
+    nearest_fill(q, pool, 0, H, where, some, NULL);
+    for (int i = 0; i < W * H; i++)
+        g_assert_cmpfloat((double)some[i], ==, where[i] > 0.0f ? (double)all[i] : 0.0);
+    nearest_free(q);
+    pool_free(pool);
+    bins_clear(&bins);
+    g_free(all);
+    g_free(some);
+    g_free(where);
+}
+
+/* Strokes that are made along with others are those that are made alone. */
+static void test_strokes_together(void)
+{
+    static const StrokeTolerance tol[] = {{0.04, 0.0}, {0.1, 0.03}, {0.5, 0.0}};
+    Network *net = net_tree(150, 15, 1.0, 3);
+    Frame f = frame_fit(net->margin->box, 700, true, 0.02);
+    Strokes *together[3];
+    strokes_make(net, &f, 3, tol, together);
+    for (int i = 0; i < 3; i++) {
+        Strokes *alone = strokes_new(net, &f, tol[i]);
+        g_assert_cmpuint(together[i]->n, ==, alone->n);
+        g_assert_cmpuint(alone->n, >, 15);
+        for (uint32_t k = 0; k < alone->n; k++) {
+            const Stroke *s = &alone->v[k], *t = &together[i]->v[k];
+            g_assert_true(memcmp(&s->shape, &t->shape, sizeof s->shape) == 0 && s->before.x == t->before.x && s->before.y == t->before.y);
+            g_assert_true(s->vein == t->vein && s->birth0 == t->birth0 && s->birth1 == t->birth1 && s->order == t->order && s->cut == t->cut);
+        }
+        strokes_free(alone);
+        strokes_free(together[i]);
+    }
+    network_free(net);
 }
 
 /* No veins, no blade, images of one pixel: nothing breaks. */
@@ -1118,6 +1175,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/paint/capsule", test_capsule);
     g_test_add_func("/paint/strokes", test_strokes);
+    g_test_add_func("/paint/strokes-together", test_strokes_together);
     g_test_add_func("/paint/coverage/samples", test_coverage);
     g_test_add_func("/paint/coverage/clip", test_clip);
     g_test_add_func("/paint/coverage/cut", test_cut);
@@ -1131,6 +1189,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paint/padding/step", test_padding_step);
     g_test_add_func("/paint/padding/scale", test_padding_scale);
     g_test_add_func("/paint/nearest", test_nearest);
+    g_test_add_func("/paint/nearest-where", test_nearest_where);
     g_test_add_func("/paint/distance", test_distance);
     g_test_add_func("/paint/labels/thin", test_thin_labels);
     g_test_add_func("/paint/labels/priority", test_label_priority);
