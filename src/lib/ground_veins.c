@@ -18,10 +18,10 @@ static gboolean read_drawing(Ground *g, const Params *p, GError **error)
     bool svg = is_svg(file);
     SvgPlace place = {0};
     if (!svg && !g->scan) {
-        char *place = params_place(p, PARAM_VEINS_DRAWING);
+        char *given = params_place(p, PARAM_VEINS_DRAWING);
         g_set_error(error, SETTINGS_ERROR, SETTINGS_ERROR_CONFLICT,
-                    "%s: a text file of lines is in pixels of a scan, so scan.file is needed, too", place);
-        g_free(place);
+                    "%s: a text file of lines is in pixels of a scan, so scan.file is needed, too", given);
+        g_free(given);
         return FALSE;
     }
     bool placed = svg && g->scan && ground_place(g, p, file, &place);
