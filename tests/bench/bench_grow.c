@@ -10,13 +10,14 @@
  * --sources grows the static workload from points of your own, x,y in segments from the base, open and closed, on one thread: for comparing
  * with other implementations on the same points.
  * What bounds it now. Of the static workload: every source turns to a new nearest node in every step, which makes 1.3e8 turns of 10⁵ sources
- * and 4e9 of 10⁶. An open turn takes 8 to 9 ns. Half of the sources are in crowds that all pull one node and are moved on together (lone.c); of
- * them nothing is left but the square root and the division of each pull, 14 cycles for four of them, and the sum, one pull after the other to
- * keep its rounding, 3 cycles each. The others are compared with the few nodes that their crowd looks at; which these are takes a seventh of
- * the time (sight.c), births another. A closed turn takes 23 ns. A quarter of that is for the sources with several neighbours, which look for
- * themselves (hood_update), about 1 us each, most of it waiting on two trees; another for the crowds near veins, where some of the nodes behind
+ * and 4e9 of 10⁶. An open turn takes 7 to 8 ns. More than half of the sources are in crowds that all pull one node and are moved on together (lone.c);
+ * of them nothing is left but the square root and the division of each pull, 14 cycles for four of them, in whose shade the sum goes on, one pull
+ * after the other to keep its rounding. The others are compared with the few nodes that their crowd looks at, a fifth of the time; which these are
+ * takes a quarter (points.c), births a tenth. A closed turn takes 21 ns. A fifth of that is for the sources with several neighbours, which look for
+ * themselves (hood_update), about 0.6 us each, most of it waiting on two trees; a quarter for the crowds near veins, where some of the nodes behind
  * the nearest one matter (block_rivals, all_excluded); a sixth to find which nodes a crowd looks at. Two threads have their own bands each
- * (turn.c); they hand over the sums of pulls, and wait for each other to do so. Of a growing leaf: the first neighbourhoods of new sources
+ * (turn.c), as long as that is faster than one; they hand over the sums of pulls, and what one has written the other waits for, 0.1 to 0.4 us each
+ * time, as far from each other as their caches are; births and sorting are one thread's. Of a growing leaf: the first neighbourhoods of new sources
  * (hood_find), and room for darts and nodes (quadtree_any_within).
  * Ends with 1 when the plain twin grows another network, when threads do, or when a model takes more than 200 bytes a vein node. Times are of
  * the growth loop alone. --quick, of less than 20 seconds without a model, keeps to small cases and leaves Urquhart's neighbourhoods out. */
