@@ -99,6 +99,9 @@ void painter_strokes_ready(Painter *p, bool shaped); /* strokes for coverage and
 /* Rows around the painted ones that the arch depends on, pixels. */
 uint32_t arch_reach(const Painter *p);
 
+/* Frees planes and fields (band.c). */
+void painter_drop(Painter *p);
+
 /* Makes room for the rows at hand; the first of those not filled yet, a multiple of TILE, or p->bottom. What these hold is left from other rows. */
 uint32_t field_begin(const Painter *p, Field *f);
 

@@ -207,6 +207,8 @@ Areoles *network_areoles(const Network *net)
     EdgeOrder o;
     Faces f;
     edge_order_init(&o, p->order, p->n_nodes, p->node, p->n_nodes, (const uint32_t (*)[2])p->edge, p->n_edges);
+    g_clear_pointer(&p->edge, g_free); /* of large networks it all takes much memory */
+    g_clear_pointer(&o.was_edge, g_free);
     faces_init(&f, &o);
     collect(&f, a);
     faces_clear(&f);

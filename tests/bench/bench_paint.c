@@ -2,12 +2,12 @@
  * files hold, as the library has it; whole sets on one thread and two; leaves a minute. Times are processor time unless they are called wall time.
  * usage: bench_paint PARAMS [--quick | --large] [--compression]
  *
- * What bounds it: compression takes most of the writing, and of a leaf of few veins most of all: half of a set at 8192. Of a leaf of many veins (poplar, 10^6
- * edges) painting takes more at 4096, 9.9 s of processor time. A quarter of that is the exact union of strokes in each pixel: 2.5 million pixels, six million
- * parts of strokes, each cut some four times; no function has more than 7 % of all. The rest: areoles 1.2 s, the nearest vein 1.0, bulges 0.9 (both of which stream
- * through vector instructions and wait for strokes to come from memory), strokes for coverage and for bulges 0.5 each, which is waiting for the network's arrays,
- * colours 0.6, and what each map reads of the stroke at a pixel 0.8. Areoles are made by one thread while another one makes strokes: 4.5 s beside 3.2 of a life-size
- * leaf, of 28 s of painting at 8192.
+ * What bounds it: compression takes most of the writing, and of a leaf of few veins most of all: three quarters of a set at 4096. Of a leaf of many veins (poplar,
+ * 10^6 edges) painting takes half at 4096, 7.3 s of processor time. More than a third of that is the exact union of strokes in each pixel: 2.5 million pixels, five
+ * and a half million parts of strokes, 37 million cuts of polygons of five points, of which 25 million cut something, some 40 ns each; no function has more than 8 % of
+ * all. The rest: areoles 0.8 s, the nearest vein and bulges 0.9 each, strokes 0.7, which is waiting for the network's arrays, colours 0.55, which pixel is whose
+ * 0.4. All other maps are 0.6 together; memory that the system gives anew is 0.3. Areoles are made by one thread while another one makes strokes and noise: 2.4 s
+ * beside 1.7 of a life-size leaf, of 20 s of painting at 8192, where coverage takes 6.
  *
  * Compression (kill-distance.ini, 2048 pixels, 17 maps, zlib 1.2.13, s of processor time and MB; --compression prints it map by map). PNG, the rows behind one
  * filter for all: with runs `distance` alone grows, by an eighth, and vein_id by a tenth.
