@@ -3,12 +3,22 @@
 #include "scan/fill_grain.h"
 #include "scan/fill_pyramid.h"
 #include "scan/openings.h"
+#include "scan/stalk_over.h"
 
 #define INSET 0.008     /* share of the root of the leaf's area: shadows at the rims of leaves that don't lie quite flat */
 #define LEAST_INSET 3.0 /* pixels: what scanners and JPEG blur */
+#define BESIDE 0.3      /* widths of a petiole that lies over the blade: its shadow reaches so far */
 #define LONG 12.0       /* area of a part that is thinner than the inset but no tip, in squares of the inset */
 
 double scan_fill_inset(double area) { return MAX(INSET * sqrt(area), LEAST_INSET); }
+
+typedef struct {
+    Scan *scan;
+    Mask mask;
+    MaskBox box;
+    FillPyramid means;
+    FillGrain grain;
+} Fill;
 
 /* ---- what is surely leaf ---- */
 
@@ -39,6 +49,19 @@ static void find_thin(const Mask *m, double inset)
                 mask_flood(m, &take, x, y, NULL);
 }
 
+/* Takes a petiole that lies over the blade, and its shadow, out of the leaf. */
+static void take_out_stalk(const Fill *f, const Polygon *outline, const Threshold *t)
+{
+    StalkOver *over = t ? stalk_over_find(f->scan, outline, t, outline->v[0]) : NULL;
+    for (uint32_t y = 0; over && y < f->mask.height; y++)
+        for (uint32_t x = 0; x < f->mask.width; x++) {
+            Vec2 q = vec2(f->box.x0 + x + 0.5, f->scan->height - (f->box.y0 + y + 0.5));
+            if (box_has(box_grow(over->box, BESIDE * over->width), q) && stalk_over_distance(over, q, NULL) <= BESIDE * over->width)
+                *mask_at(&f->mask, x, y) &= (uint8_t)~MASK_LEAF;
+        }
+    stalk_over_free(over);
+}
+
 /* MASK_CORE: what lies `inset` within the leaf, and of long parts that are thinner what lies half as deep. */
 static bool mark_core(const Mask *m, double inset)
 {
@@ -58,14 +81,6 @@ static bool mark_core(const Mask *m, double inset)
 }
 
 /* ---- what takes the place of the rest ---- */
-
-typedef struct {
-    Scan *scan;
-    Mask mask;
-    MaskBox box;
-    FillPyramid means;
-    FillGrain grain;
-} Fill;
 
 enum { GRAIN_LEVEL = 2 }; /* grain is what means over 8 pixels don't have */
 
@@ -127,6 +142,7 @@ void scan_fill(Scan *s, const Polygon *outline, const Threshold *t, double inset
     f.mask = (Mask){f.box.x1 - f.box.x0 + 1, f.box.y1 - f.box.y0 + 1, f.box.x1 - f.box.x0 + 1, NULL};
     f.mask.px = g_malloc0((gsize)f.mask.width * f.mask.height);
     openings_mark(s, outline, t, openings_least(outline->area), &f.mask, f.box);
+    take_out_stalk(&f, outline, t);
     if (mark_core(&f.mask, inset)) {
         mask_dilate(&f.mask, MASK_THIS, MASK_SEEN, around);
         fill_all(&f);

@@ -298,6 +298,7 @@ static void find_branching(Search *s, double threshold)
     if (find_midvein(s, 3.0 * least)) {
         find_others(s, least);
         find_short(s, least);
+        found_under(&s->leaf, s->ridges, s->vein);
     }
     weed(s);
     found_hub(&s->leaf, (FoundVein *)(void *)s->vein->data, s->vein->len, s->base);

@@ -76,9 +76,28 @@ static void join(FoundVein *v, const FoundVein *parent)
     begin_at(v, foot, keep);
 }
 
+/* No vein is wider than the one it leaves is there: where two run side by side both may be measured as one. */
+static void cap(FoundVein *v, const FoundVein *parent)
+{
+    double distance, most = HUGE_VAL;
+    nearest_on(parent, v->p[0], &distance, &most);
+    for (uint32_t i = 0; i < v->n; i++)
+        v->width[i] = MIN(v->width[i], most);
+}
+
+static bool leaves_another(const FoundVein *vein, uint32_t k) { return !vein[k].ghost && vein[k].parent != k && !vein[vein[k].parent].ghost; }
+
 void found_join(FoundVein *vein, uint32_t n)
 {
     for (uint32_t k = 1; k < n; k++)
-        if (!vein[k].ghost && vein[k].parent != k && !vein[vein[k].parent].ghost)
+        if (leaves_another(vein, k))
             join(&vein[k], &vein[vein[k].parent]);
+    for (uint32_t order = 2, more = 1; more; order++) { /* parents first */
+        more = 0;
+        for (uint32_t k = 1; k < n; k++) {
+            more += vein[k].order > order;
+            if (vein[k].order == order && leaves_another(vein, k))
+                cap(&vein[k], &vein[vein[k].parent]);
+        }
+    }
 }

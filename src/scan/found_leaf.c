@@ -13,6 +13,7 @@ static const double border = 0.006;        /* of the leaf's length: so near the 
 static const double evening = 0.025;       /* of the length: sigma of what counts as illumination */
 static const double hole_radius = 0.007;   /* of the length: what is clearly ground over so much is a hole, but … */
 static const double thick_radius = 0.1;    /* … so near to the base, where veins and petiole are thick and pale */
+static const double shadow_share = 0.2;    /* of a petiole's width */
 enum { COARSE = 4 };                       /* illumination is found on blocks of so many pixels a side */
 
 /* --- averaging down --- */
@@ -140,6 +141,23 @@ static void take_out_holes(FoundLeaf *l, const Vec2 *base)
     g_free(hole);
 }
 
+/* A petiole over the blade hides it, and so does its shadow. */
+static void take_out_stalk(FoundLeaf *l, const Polygon *outline, Vec2 base)
+{
+    l->over = stalk_over_find(l->scan, outline, NULL, base);
+    for (uint32_t y = 0; l->over && y < l->height; y++)
+        for (uint32_t x = 0; x < l->width; x++) {
+            gsize i = (gsize)y * l->width + x;
+            double shadow = shadow_share * l->over->width;
+            Vec2 q = vec2(l->x0 + (x + 0.5) * l->step, l->scan->height - l->y0 - (y + 0.5) * l->step);
+            bool thick = vec_dist(q, base) < 2.0 * l->over->width; /* veins run together there, and it is one of them */
+            if (l->inside[i] && !thick && box_has(box_grow(l->over->box, shadow), q) && stalk_over_distance(l->over, q, NULL) <= shadow) {
+                l->inside[i] = 0;
+                l->hole[i] = 1;
+            }
+        }
+}
+
 /* What of the blade isn't deep around holes goes with them. */
 static void add_rims(FoundLeaf *l, double r)
 {
@@ -167,6 +185,8 @@ static void mark_blade(FoundLeaf *l, const Polygon *outline, const Vec2 *base)
             l->inside[(gsize)y * l->width + x] = seen && polygon_contains(outline, vec2(sx, l->scan->height - sy));
         }
     take_out_holes(l, base);
+    if (base)
+        take_out_stalk(l, outline, *base);
     erode(l, l->inside, MAX(border * l->length, 2.0), l->deep);
     add_rims(l, MAX(border * l->length, 2.0));
 }
@@ -266,4 +286,5 @@ void found_leaf_clear(FoundLeaf *l)
     g_free(l->inside);
     g_free(l->deep);
     g_free(l->hole);
+    stalk_over_free(l->over);
 }

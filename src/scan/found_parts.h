@@ -3,6 +3,7 @@
 #define SCAN_FOUND_PARTS_H
 
 #include "scan/found.h"
+#include "scan/stalk_over.h"
 
 /* The leaf at working resolution. */
 typedef struct {
@@ -15,6 +16,7 @@ typedef struct {
     uint8_t *inside;     /* [height][width] 1 in the blade */
     uint8_t *deep;       /* 1 where a ridge is none of the border's */
     uint8_t *hole;       /* 1 in holes that the outline doesn't know of, and around them where the blade isn't deep */
+    StalkOver *over;     /* a petiole that lies over the blade, a hole, too; NULL when there is none, or the base isn't known */
     uint32_t n_planes;   /* 1 or 3 */
     GreyImage *plane[3]; /* illumination evened, 0 outside, veins of either polarity */
 } FoundLeaf;
@@ -80,6 +82,9 @@ uint32_t *found_paths_best(FoundPaths *p, double least, uint32_t *n, uint32_t *i
 /* Smooth points at even steps along the ridge, widths measured. */
 void found_trace(const FoundLeaf *l, const FoundRidges *r, FoundVein *v);
 
+/* The primary that a petiole lies over goes on below it to the margin, and isn't what turns aside from it before. */
+void found_under(const FoundLeaf *l, const FoundRidges *r, GArray *vein);
+
 /* Another beginning: the n points of `lead`, as wide as the vein is at its point `keep`, instead of those before that. */
 void found_lead(FoundVein *v, uint32_t keep, const Vec2 *lead, uint32_t n);
 
@@ -87,7 +92,7 @@ void found_lead(FoundVein *v, uint32_t keep, const Vec2 *lead, uint32_t n);
  * that makes a ridge. */
 bool found_parallel(const FoundLeaf *l, const FoundRidges *r, Vec2 base, Vec2 tip, double threshold, GArray *vein);
 
-/* Veins begin on the lines of those they leave. */
+/* Veins begin on the lines of those they leave, and are no wider than those are there. */
 void found_join(FoundVein *vein, uint32_t n);
 
 /* Primaries that run together at the base begin at one node on the midvein, which is the first of the veins and begins at the base itself. */

@@ -158,7 +158,7 @@ static bool unseen(const FoundLeaf *l, Vec2 q)
     return !l->inside[i] || l->hole[i];
 }
 
-/* Straight over holes, from where it is last seen to where it is seen again, and as wide as the ends are. */
+/* Straight over holes, from where it is last seen to where it is seen again, and as wide as the ends are; where it isn't seen again it tapers to half. */
 static void bridge(const FoundLeaf *l, FoundVein *v)
 {
     for (uint32_t i = 1, end; i < v->n; i = end + 1) {
@@ -169,6 +169,8 @@ static void bridge(const FoundLeaf *l, FoundVein *v)
             v->p[k] = vec_lerp(v->p[i - 1], v->p[end], t);
             v->width[k] = v->width[i - 1] + (v->width[end] - v->width[i - 1]) * t;
         }
+        for (uint32_t k = i; end == v->n && k < end; k++)
+            v->width[k] = v->width[i - 1] * (1.0 - 0.5 * (k - i + 1) / (end - i));
     }
 }
 

@@ -8,6 +8,7 @@
 #include "scan/gather.h"
 #include "scan/mask.h"
 #include "scan/stalk.h"
+#include "scan/stalk_over.h"
 
 #define NEAR 0.02          /* given points nearer to the outline than this share of the leaf's extent are meant to lie on it */
 #define FAR 0.1            /* given points farther outside are a mistake */
@@ -291,6 +292,23 @@ static void mend_base(const Capture *c, const Mask *w, const Stalk *s)
     mask_clear(&m, MASK_WORK);
 }
 
+/* A petiole that is bent over the blade, which was traced with a slit where it is as pale as the ground: true when that is mended. */
+static bool uncover(Capture *c, const Mask *w, const Polygon *blade)
+{
+    Profile *o = c->out;
+    bool as_usual = o->has_stalk && o->base_from == BASE_STALK;
+    StalkOver *over = as_usual || c->def->keep_stalk ? NULL : stalk_over_find(c->scan, blade, c->threshold, o->base);
+    if (!over)
+        return false;
+    stalk_over_mend(over, w, upright(c, vec2(0.0, 0.0)));
+    o->has_stalk = true;
+    o->stalk_end = over->point[0].p;
+    o->stalk_width = over->width;
+    o->stalk_length = over->length;
+    stalk_over_free(over);
+    return true;
+}
+
 static bool capture_leaf(Capture *c, GError **error)
 {
     Profile *o = c->out;
@@ -313,6 +331,11 @@ static bool capture_leaf(Capture *c, GError **error)
         return false;
     }
     bool ok = find_ends(c, whole, blade, error);
+    if (ok && uncover(c, &window, blade)) {
+        polygon_free(blade);
+        whole = blade = trace(c, false);
+        ok = find_ends(c, whole, blade, error);
+    }
     if (ok)
         o->outline = finish(c, whole);
     polygon_free(blade);

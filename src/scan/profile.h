@@ -12,7 +12,7 @@ typedef struct {
     double close, open;  /* radii of discs by which gaps are closed, then thin and small things removed; 0: not done */
     bool each;           /* every leaf, not just the largest */
     double least_area;   /* of a leaf, share of the largest; what is smaller is a speck */
-    bool keep_stalk;     /* else the petiole is cut off where it meets the blade */
+    bool keep_stalk;     /* the outline is that of all that is leaf; else the petiole is cut off where it meets the blade, and where it lies over the blade it is no margin */
     bool has_base, has_tip; /* given by hand; not with `each` */
     Vec2 base, tip;
     uint32_t square;     /* side of the marching square */

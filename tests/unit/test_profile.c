@@ -7,6 +7,7 @@
 #include "geom/ring.h"
 #include "scan/axis.h"
 #include "scan/mask.h"
+#include "scan/fill.h"
 #include "scan/profile.h"
 #include "scan/stalk.h"
 
@@ -445,6 +446,56 @@ static void test_bent_stalk(void)
     scan_free(s);
 }
 
+/* A petiole bent over the blade, as pale as paper there: the outline is that of the blade without it, by a twin; its colour is nothing that is left by scan_fill. */
+static void test_over(void)
+{
+    enum { N = 64 };
+    static const uint8_t PINK[3] = {190, 160, 140}, BROWN[3] = {150, 125, 105}; /* the blade hangs together below its end, which is darker */
+    Profile *of[2];
+    GPtrArray *all[2];
+    for (int k = 0; k < 2; k++) {
+        Scan *s = paper(500, 500);
+        Vec2 v[2 * N + 1], stick[] = {{-0.02, 0.0}, {0.02, 0.07}, {0.55, 0.30}, {0.535, 0.335}, {-0.01, 0.105}, {-0.045, 0.02}};
+        Vec2 end[] = {{0.25, 0.17}, {0.55, 0.30}, {0.535, 0.335}, {0.235, 0.208}};
+        uint32_t n = ovate(v, N, 0.7, 0.0);
+        place(v, 2 * N, 0.0, 400.0, vec2(230, 50));
+        place(stick, 6, 0.0, 400.0, vec2(230, 50));
+        place(end, 4, 0.0, 400.0, vec2(230, 50));
+        fill(s, v, n, GREEN);
+        if (k == 1) {
+            fill(s, stick, 6, PINK);
+            fill(s, end, 4, BROWN);
+        }
+        ProfileDef def = profile_def_default();
+        def.has_base = true; /* with the slit it is no symmetric leaf, and veins that would tell it has none */
+        def.base = v[0];
+        all[k] = capture_ok(s, &def);
+        of[k] = all[k]->pdata[0];
+        if (k == 1) {
+            Threshold t;
+            g_assert_true(threshold_find(s, &def.threshold, &t, NULL));
+            scan_fill(s, of[k]->outline, &t, 3.0, 4);
+            for (uint32_t i = 0; i < 20; i++) {
+                Vec2 q = vec_lerp(vec2(270, 92), vec2(350, 127), i / 19.0);
+                uint32_t y = (uint32_t)(s->height - q.y);
+                if (!polygon_contains(of[k]->outline, q))
+                    continue;
+                g_assert_cmpfloat(fabs((double)scan_sample(s, (uint32_t)q.x, y, 0) - GREEN[0]), <, 12.0);
+                g_assert_cmpfloat(fabs((double)scan_sample(s, (uint32_t)q.x, y, 2) - GREEN[2]), <, 12.0);
+            }
+        }
+        scan_free(s);
+    }
+    g_assert_false(of[0]->has_stalk);
+    g_assert_true(of[1]->has_stalk);
+    g_assert_cmpfloat(fabs(of[1]->area / of[0]->area - 1.0), <, 0.01);
+    g_assert_cmpfloat(fabs(of[1]->perimeter / of[0]->perimeter - 1.0), <, 0.03);
+    assert_close(of[1]->base, of[0]->base, 8.0);
+    assert_close(of[1]->stalk_end, vec2(447, 177), 12.0);
+    g_ptr_array_free(all[0], TRUE);
+    g_ptr_array_free(all[1], TRUE);
+}
+
 /* Two round lobes beside a notch: the notch is the base. */
 static void test_sinus(void)
 {
@@ -802,6 +853,7 @@ int main(int argc, char **argv)
     g_test_add_func("/profile/stalk", test_stalk);
     g_test_add_func("/profile/no_stalk", test_no_stalk);
     g_test_add_func("/profile/bent_stalk", test_bent_stalk);
+    g_test_add_func("/profile/over", test_over);
     g_test_add_func("/profile/sinus", test_sinus);
     g_test_add_func("/profile/several", test_several);
     g_test_add_func("/profile/frame", test_frame);
