@@ -123,7 +123,7 @@ static void fill_cell(const Fill *f, uint32_t cx, uint32_t cy, uint32_t channel)
 static void fill_all(Fill *f)
 {
     fill_grain_init(&f->grain, f->scan, &f->mask, f->box);
-    fill_pyramid_init(&f->means, &f->mask);
+    fill_pyramid_init(&f->means, &f->mask, f->scan->depth);
     for (uint32_t c = 0; c < f->scan->channels; c++) {
         fill_pyramid_take(&f->means, f->scan, c, &f->mask, f->box);
         for (uint32_t y = 0; y < f->grain.height; y++)

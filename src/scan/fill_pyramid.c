@@ -6,7 +6,7 @@ enum { SWEEPS = 12 }; /* each brings the edge nearer; what is left to do after t
 static FillLevel level_new(uint32_t width, uint32_t height)
 {
     gsize n = (gsize)width * height;
-    return (FillLevel){width, height, g_new0(uint8_t, n), g_new0(float, n)};
+    return (FillLevel){width, height, g_new0(uint8_t, n), g_new0(uint16_t, n)};
 }
 
 static void states_of_mask(FillLevel *l, const Mask *m)
@@ -30,10 +30,10 @@ static void states_of_level(FillLevel *l, const FillLevel *fine)
         }
 }
 
-void fill_pyramid_init(FillPyramid *p, const Mask *mask)
+void fill_pyramid_init(FillPyramid *p, const Mask *mask, uint32_t depth)
 {
     uint32_t w = mask->width, h = mask->height;
-    *p = (FillPyramid){0};
+    *p = (FillPyramid){.parts = depth == 8 ? 256.0 : 1.0};
     do {
         w = (w + 1) / 2;
         h = (h + 1) / 2;
@@ -57,7 +57,9 @@ void fill_pyramid_clear(FillPyramid *p)
 
 /* ---- means ---- */
 
-static void means_of_scan(FillLevel *l, const Scan *s, uint32_t channel, const Mask *m, MaskBox box)
+static uint16_t rounded(double v) { return (uint16_t)(v + 0.5); }
+
+static void means_of_scan(FillLevel *l, double parts, const Scan *s, uint32_t channel, const Mask *m, MaskBox box)
 {
     for (uint32_t y = 0; y < l->height; y++)
         for (uint32_t x = 0; x < l->width; x++) {
@@ -69,7 +71,7 @@ static void means_of_scan(FillLevel *l, const Scan *s, uint32_t channel, const M
                         sum += scan_sample(s, box.x0 + i, box.y0 + j, channel);
                         n++;
                     }
-            l->value[(gsize)y * l->width + x] = n > 0 ? (float)(sum / n) : 0.0f;
+            l->value[(gsize)y * l->width + x] = n > 0 ? rounded(parts * sum / n) : 0;
         }
 }
 
@@ -82,10 +84,10 @@ static void means_of_level(FillLevel *l, const FillLevel *fine)
             for (uint32_t j = 2 * y; j < MIN(2 * y + 2, fine->height); j++)
                 for (uint32_t i = 2 * x; i < MIN(2 * x + 2, fine->width); i++)
                     if (fine->state[(gsize)j * fine->width + i] == KNOWN) {
-                        sum += (double)fine->value[(gsize)j * fine->width + i];
+                        sum += fine->value[(gsize)j * fine->width + i];
                         n++;
                     }
-            l->value[(gsize)y * l->width + x] = n > 0 ? (float)(sum / n) : 0.0f;
+            l->value[(gsize)y * l->width + x] = n > 0 ? rounded(sum / n) : 0;
         }
 }
 
@@ -97,14 +99,14 @@ static double between(const FillLevel *l, double x, double y)
     y = CLAMP(y - 0.5, 0.0, l->height - 1.0);
     uint32_t i = (uint32_t)x, j = (uint32_t)y, i1 = MIN(i + 1, l->width - 1), j1 = MIN(j + 1, l->height - 1);
     double fx = x - i, fy = y - j;
-    const float *top = l->value + (gsize)j * l->width, *low = l->value + (gsize)j1 * l->width;
-    return ((double)top[i] * (1.0 - fx) + (double)top[i1] * fx) * (1.0 - fy) + ((double)low[i] * (1.0 - fx) + (double)low[i1] * fx) * fy;
+    const uint16_t *top = l->value + (gsize)j * l->width, *low = l->value + (gsize)j1 * l->width;
+    return (top[i] * (1.0 - fx) + top[i1] * fx) * (1.0 - fy) + (low[i] * (1.0 - fx) + low[i1] * fx) * fy;
 }
 
 double fill_pyramid_at(const FillPyramid *p, uint32_t level, double x, double y)
 {
     double by = 1.0 / (double)(2u << level);
-    return between(&p->level[level], x * by, y * by);
+    return between(&p->level[level], x * by, y * by) / p->parts;
 }
 
 static void relax(FillLevel *l, uint32_t x, uint32_t y)
@@ -115,15 +117,15 @@ static void relax(FillLevel *l, uint32_t x, uint32_t y)
     double sum = 0.0;
     uint32_t n = 0;
     if (x > 0 && l->state[i - 1] != UNKNOWN)
-        sum += (double)l->value[i - 1], n++;
+        sum += l->value[i - 1], n++;
     if (x + 1 < l->width && l->state[i + 1] != UNKNOWN)
-        sum += (double)l->value[i + 1], n++;
+        sum += l->value[i + 1], n++;
     if (y > 0 && l->state[i - l->width] != UNKNOWN)
-        sum += (double)l->value[i - l->width], n++;
+        sum += l->value[i - l->width], n++;
     if (y + 1 < l->height && l->state[i + l->width] != UNKNOWN)
-        sum += (double)l->value[i + l->width], n++;
+        sum += l->value[i + l->width], n++;
     if (n > 0)
-        l->value[i] = (float)(sum / n);
+        l->value[i] = rounded(sum / n);
 }
 
 /* There and back by turns, so that nothing leans to one side. */
@@ -141,7 +143,7 @@ static void solve(FillLevel *l)
 
 void fill_pyramid_take(FillPyramid *p, const Scan *s, uint32_t channel, const Mask *mask, MaskBox box)
 {
-    means_of_scan(&p->level[0], s, channel, mask, box);
+    means_of_scan(&p->level[0], p->parts, s, channel, mask, box);
     for (uint32_t k = 1; k < p->n; k++)
         means_of_level(&p->level[k], &p->level[k - 1]);
     for (uint32_t k = p->n - 1; k-- > 0;) { /* the last one is a single cell, and known */
@@ -149,7 +151,7 @@ void fill_pyramid_take(FillPyramid *p, const Scan *s, uint32_t channel, const Ma
         for (uint32_t y = 0; y < l->height; y++)
             for (uint32_t x = 0; x < l->width; x++)
                 if (l->state[(gsize)y * l->width + x] != KNOWN)
-                    l->value[(gsize)y * l->width + x] = (float)between(&p->level[k + 1], 0.5 * (x + 0.5), 0.5 * (y + 0.5));
+                    l->value[(gsize)y * l->width + x] = rounded(between(&p->level[k + 1], 0.5 * (x + 0.5), 0.5 * (y + 0.5)));
         solve(l);
     }
 }

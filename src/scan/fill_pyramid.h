@@ -8,7 +8,7 @@
 typedef struct {
     uint32_t width, height;
     uint8_t *state;
-    float *value; /* one channel's */
+    uint16_t *value; /* one channel's, in parts of a grey value */
 } FillLevel;
 
 enum { FILL_LEVELS = 32 };
@@ -16,11 +16,12 @@ enum { FILL_LEVELS = 32 };
 /* A cell of level k is a square of 2 << k pixels. */
 typedef struct {
     uint32_t n;
+    double parts; /* of a grey value: 256 of 8 bits, 1 of 16; a float would take the memory of another image */
     FillLevel level[FILL_LEVELS];
 } FillPyramid;
 
-/* `mask` is of a box of the scan: MASK_CORE is what is known, MASK_SEEN what is wanted. At least one pixel is known. */
-void fill_pyramid_init(FillPyramid *p, const Mask *mask);
+/* `mask` is of a box of a scan of `depth` bits: MASK_CORE is what is known, MASK_SEEN what is wanted. At least one pixel is known. */
+void fill_pyramid_init(FillPyramid *p, const Mask *mask, uint32_t depth);
 void fill_pyramid_clear(FillPyramid *p);
 
 /* Takes one channel of the scan: means of what is known, and between them, where values are wanted, the solution of Laplace's equation, nearly. */
