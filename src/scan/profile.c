@@ -264,6 +264,19 @@ static double ground_level(const Capture *c)
     return n > 0.0 ? sum / n : c->threshold->level;
 }
 
+typedef struct {
+    const Capture *capture;
+    double most; /* off the threshold's level: still clearly no ground */
+} Pale;
+
+static bool is_plant(const void *user, uint32_t x, uint32_t y)
+{
+    const Pale *p = user;
+    const Threshold *t = p->capture->threshold;
+    double off = level_of(p->capture, p->capture->box.x0 + x, p->capture->box.y0 + y) - t->level;
+    return (t->dark ? off : -off) <= p->most;
+}
+
 /* Veins run together where the petiole meets the blade, and may be paler there than the threshold, though not as pale as the ground: slits and bites
  * that they leave in the blade are closed. */
 static void mend_base(const Capture *c, const Mask *w, const Stalk *s)
@@ -292,12 +305,13 @@ static void mend_base(const Capture *c, const Mask *w, const Stalk *s)
     mask_clear(&m, MASK_WORK);
 }
 
-/* A petiole that is bent over the blade, which was traced with a slit where it is as pale as the ground: true when that is mended. */
+/* A petiole that is bent over the blade, which was traced with a slit where it is as pale as the ground: true when that is mended. Masks that were made otherwise
+ * keep the shape they have. */
 static bool uncover(Capture *c, const Mask *w, const Polygon *blade)
 {
     Profile *o = c->out;
     bool as_usual = o->has_stalk && o->base_from == BASE_STALK;
-    StalkOver *over = as_usual || c->def->keep_stalk ? NULL : stalk_over_find(c->scan, blade, c->threshold, o->base);
+    StalkOver *over = as_usual || c->def->keep_stalk || !c->threshold ? NULL : stalk_over_find(c->scan, blade, c->threshold, o->base);
     if (!over)
         return false;
     stalk_over_mend(over, w, upright(c, vec2(0.0, 0.0)));
@@ -316,8 +330,11 @@ static bool capture_leaf(Capture *c, GError **error)
     o->mm_per_pixel = c->scan->mm_per_pixel;
     o->has_stalk = stalk_find(&window, &c->stalk);
     if (o->has_stalk) {
-        if (c->threshold)
+        if (c->threshold) {
+            Pale pale = {c, PALE * fabs(ground_level(c) - c->threshold->level)};
             mend_base(c, &window, &c->stalk);
+            c->stalk.base = stalk_middle(&window, &c->stalk, is_plant, &pale);
+        }
         o->stalk_end = upright(c, c->stalk.end);
         o->stalk_width = c->stalk.width;
         o->stalk_length = c->stalk.length;

@@ -22,4 +22,8 @@ typedef struct {
  * and nothing marked, when there is none. Uses MASK_CORE and MASK_WORK. */
 bool stalk_find(const Mask *w, Stalk *out);
 
+/* The base moved to the middle of the petiole as it is seen, for of a pale or shaded one the mask may have one side only: `plant` says whether a pixel of the
+ * window is clearly none of the ground. Needs the marks of stalk_find. */
+Vec2 stalk_middle(const Mask *w, const Stalk *s, bool (*plant)(const void *user, uint32_t x, uint32_t y), const void *user);
+
 #endif

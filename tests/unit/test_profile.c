@@ -446,6 +446,34 @@ static void test_bent_stalk(void)
     scan_free(s);
 }
 
+/* A petiole of which the threshold has but one side: the base is where its middle meets the blade all the same. */
+static void test_pale_side(void)
+{
+    enum { N = 64 };
+    static const uint8_t PALE[3] = {190, 170, 160};
+    for (int side = -1; side <= 1; side += 2) {
+        Scan *s = paper(500, 500);
+        Vec2 v[2 * N + 1], petiole[] = {{-0.024, 0.03}, {-0.024, -0.25}, {0.024, -0.25}, {0.024, 0.03}};
+        Vec2 dark[] = {{side * 0.008, 0.03}, {side * 0.008, -0.25}, {side * 0.024, -0.25}, {side * 0.024, 0.03}};
+        uint32_t n = ovate(v, N, 0.7, 0.0);
+        place(v, 2 * N, 0.0, 350.0, vec2(250, 120));
+        place(petiole, 4, 0.0, 350.0, vec2(250, 120));
+        place(dark, 4, 0.0, 350.0, vec2(250, 120));
+        fill(s, petiole, 4, PALE);
+        fill(s, dark, 4, GREEN);
+        fill(s, v, n, GREEN);
+        ProfileDef def = profile_def_default();
+        def.threshold.channel = CHANNEL_RED;
+        GPtrArray *a = capture_ok(s, &def);
+        const Profile *p = a->pdata[0];
+        g_assert_true(p->has_stalk);
+        g_assert_cmpint(p->base_from, ==, BASE_STALK);
+        g_assert_cmpfloat(fabs(p->base.x - 250.0), <, 2.0); /* the dark side's middle is 5.6 pixels off */
+        g_ptr_array_free(a, TRUE);
+        scan_free(s);
+    }
+}
+
 /* A petiole bent over the blade, as pale as paper there: the outline is that of the blade without it, by a twin; its colour is nothing that is left by scan_fill. */
 static void test_over(void)
 {
@@ -853,6 +881,7 @@ int main(int argc, char **argv)
     g_test_add_func("/profile/stalk", test_stalk);
     g_test_add_func("/profile/no_stalk", test_no_stalk);
     g_test_add_func("/profile/bent_stalk", test_bent_stalk);
+    g_test_add_func("/profile/pale_side", test_pale_side);
     g_test_add_func("/profile/over", test_over);
     g_test_add_func("/profile/sinus", test_sinus);
     g_test_add_func("/profile/several", test_several);
