@@ -39,6 +39,15 @@ static void check_pixels(Ground *g, const Params *p)
                                params_text(p, PARAM_SCAN_FILE), aspect, 100.0 * (MAX(aspect, 1.0 / aspect) - 1.0), aspect > 1.0 ? "narrow" : "wide");
 }
 
+/* What parts the image best need not be the leaf's margin. */
+static void check_channel(Ground *g, const Params *p)
+{
+    const Threshold *t = g->profile ? &g->threshold : g->fang ? &g->fang->threshold : NULL;
+    if (t && t->green > 0.0 && params_integer(p, PARAM_SCAN_LEAF) == 1)
+        g_string_append_printf(g->note, "%s: by %s %.0f %% of the image are leaf, by greenness, which parts it nearly as well, %.0f %%; if the outline is another thing's, "
+                               "set scan.channel = greenness\n", params_text(p, PARAM_SCAN_FILE), channel_name(t->channel), 100.0 * t->leaf, 100.0 * t->green);
+}
+
 gboolean ground_blame(const Params *p, ParamId id, GError **error)
 {
     g_prefix_error(error, "%s: ", params_text(p, id));
@@ -60,6 +69,7 @@ static gboolean find(Ground *g, const Params *p, GroundScan *sheet, bool veins, 
     if (ok && g->scan) {
         g->to_scan = ground_to_pixels(g->base, g->tip, g->scan->height);
         check_pixels(g, p);
+        check_channel(g, p);
     }
     ok = ok && (!g->back || ground_find_back(g, p, back, error));
     if (back)

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#define GREEN_NEAR 0.9  /* of the best separability */
+#define GREEN_OTHER 1.2 /* times as much leaf */
 #define LEAST_CONTRAST 0.02
 #define SATURATION_HANDICAP 0.01 /* in separability: its outlines lie off by some of a pixel where leaf and paper share one */
 
@@ -160,7 +162,7 @@ static void histograms_init(Histograms *h, const Scan *s, Channel wanted)
     Row row;
     row_init(&row, s);
     for (Channel c = CHANNEL_RED; c < CHANNEL_COUNT; c++) {
-        if (!has_channel(s, c) || (wanted == CHANNEL_BEST ? c == CHANNEL_GREENNESS : wanted != c))
+        if (!has_channel(s, c) || (wanted != CHANNEL_BEST && wanted != c))
             continue;
         h->count[c] = g_new0(uint32_t, h->bins);
         h->odd[c] = g_new0(uint32_t, h->bins);
@@ -267,6 +269,27 @@ static void set_side(const Histograms *h, LeafSide side, Threshold *t)
     }
     t->dark = side == LEAF_DARK || (side == LEAF_BY_FRAME && below <= 0.5 * all);
     t->frame = (t->dark ? all - below : below) / all;
+    below = all = 0.0;
+    for (uint32_t i = 0; i < h->bins; i++) {
+        below += i < t->level ? h->count[t->channel][i] : 0;
+        all += h->count[t->channel][i];
+    }
+    t->leaf = (t->dark ? below : all - below) / all;
+}
+
+/* Otsu's measure tells how well two classes are parted, not which of them is a leaf; that leaves are green tells more where classes differ. */
+static void ask_greenness(const Histograms *h, const ThresholdDef *def, Threshold *t)
+{
+    if (def->channel != CHANNEL_BEST || def->level >= 0.0 || !h->count[CHANNEL_GREENNESS])
+        return;
+    Threshold green = threshold_of(h, CHANNEL_GREENNESS, def->level);
+    set_side(h, def->side, &green);
+    if (green.dark || green.separability < GREEN_NEAR * t->separability || green.contrast < LEAST_CONTRAST)
+        return;
+    if (green.leaf > t->leaf * GREEN_OTHER)
+        *t = green;
+    else if (green.leaf * GREEN_OTHER < t->leaf)
+        t->green = green.leaf;
 }
 
 static bool check(const Scan *s, const ThresholdDef *def, GError **error)
@@ -291,7 +314,7 @@ bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GErr
     histograms_init(&h, s, def->channel);
     double best = -1.0;
     for (Channel c = CHANNEL_RED; c < CHANNEL_COUNT; c++) {
-        if (!h.count[c])
+        if (!h.count[c] || (c == CHANNEL_GREENNESS && def->channel == CHANNEL_BEST))
             continue;
         Threshold t = threshold_of(&h, c, def->level);
         double score = t.separability - (c == CHANNEL_SATURATION ? SATURATION_HANDICAP : 0.0);
@@ -301,6 +324,7 @@ bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GErr
         }
     }
     set_side(&h, def->side, out);
+    ask_greenness(&h, def, out);
     histograms_clear(&h);
     if (def->level < 0.0 && !(out->contrast >= LEAST_CONTRAST)) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF,

@@ -6,7 +6,9 @@
 
 /* Where a pixel is partly transparent, colours are taken as seen on white. */
 typedef enum {
-    CHANNEL_BEST, /* the one with the greatest separability, of equals the first; without greenness; saturation only where it is better by 0.01 */
+    /* The one with the greatest separability, of equals the first; saturation only where it is better by 0.01; greenness where it parts nearly as well, what
+     * is greener is leaf, and there is clearly more of it: then the other has but part of a green leaf, as on wood. */
+    CHANNEL_BEST,
     CHANNEL_RED,
     CHANNEL_GREEN,
     CHANNEL_BLUE,
@@ -36,6 +38,8 @@ typedef struct {
     double separability; /* variance between the two classes / total variance (Otsu 1979, η): 0 … 1 */
     double contrast;     /* between the classes' means, share of the whole scale */
     double frame;        /* share of the frame's pixels that are background */
+    double leaf;         /* share of all pixels that are leaf */
+    double green;        /* the same by greenness where that parts nearly as well as the best channel and says otherwise (paper on a dark ground); else 0 */
 } Threshold;
 
 /* False with SCAN_ERROR_NO_LEAF when the image is all of one shade (contrast below 2 %), with SCAN_ERROR_VALUE for a channel that the image

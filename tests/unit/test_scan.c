@@ -849,6 +849,43 @@ static void test_saturation(void)
     scan_free(s);
 }
 
+/* A green disc, on paper where `paper`, on a ground of one more colour. */
+static Scan *green_disc(bool paper, const uint8_t ground[3], uint32_t unrest)
+{
+    Scan *s = scan_new(120, 120, 3, 8);
+    for (uint32_t i = 0; i < 120 * 120; i++) {
+        double x = i % 120 - 59.5, y = i / 120 - 59.5;
+        bool leaf = x * x + y * y < 30.0 * 30.0, sheet = paper && fabs(x) < 50.0 && fabs(y) < 50.0;
+        const uint8_t green[2][3] = {{60, 95, 45}, {120, 150, 100}}, white[3] = {245, 245, 240};
+        const uint8_t *colour = leaf ? green[x > 0.0] : sheet ? white : ground;
+        double off = leaf || sheet ? 0.0 : noise(97, i, unrest);
+        for (uint32_t c = 0; c < 3; c++)
+            ((uint8_t *)s->px)[3 * i + c] = (uint8_t)CLAMP(colour[c] + off, 0.0, 255.0);
+    }
+    return s;
+}
+
+/* Otsu's separability alone takes the paper on a dark ground, and of a leaf on wood the darker half. */
+static void test_greenness(void)
+{
+    const double disc = 30.0 * 30.0 * G_PI / (120.0 * 120.0);
+    ThresholdDef def = {CHANNEL_BEST, LEAF_BY_FRAME, -1.0};
+    Threshold t;
+    Scan *wood = green_disc(false, (const uint8_t[]){150, 120, 90}, 12), *dark = green_disc(true, (const uint8_t[]){10, 10, 10}, 4);
+    g_assert_true(threshold_find(wood, &def, &t, NULL));
+    g_assert_cmpstr(channel_name(t.channel), ==, "greenness");
+    g_assert_cmpfloat(fabs(t.leaf - disc), <, 0.02 * disc);
+    g_assert_true(threshold_find(dark, &def, &t, NULL));
+    g_test_message("%s: leaf %g, green %g of %g", channel_name(t.channel), t.leaf, t.green, disc);
+    g_assert_cmpfloat(t.leaf, >, 1.5 * disc);
+    g_assert_cmpfloat(fabs(t.green - disc), <, 0.02 * disc);
+    def.channel = CHANNEL_BLUE; /* who asks for a channel gets it */
+    g_assert_true(threshold_find(wood, &def, &t, NULL));
+    g_assert_true(t.channel == CHANNEL_BLUE && t.green == 0.0);
+    scan_free(wood);
+    scan_free(dark);
+}
+
 static void threshold_fails(const Scan *s, ThresholdDef def, int code, const char *says)
 {
     GError *error = NULL;
@@ -907,6 +944,7 @@ int main(int argc, char **argv)
     g_test_add_func("/threshold/channels", test_channels);
     g_test_add_func("/threshold/channel_values", test_channel_values);
     g_test_add_func("/threshold/saturation", test_saturation);
+    g_test_add_func("/threshold/greenness", test_greenness);
     g_test_add_func("/threshold/refused", test_threshold_refused);
     int status = g_test_run();
     g_unlink(path);
