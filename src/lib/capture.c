@@ -9,6 +9,7 @@
 #include "image/scan_file.h"
 #include "image/staged.h"
 #include "lib/leaf.h"
+#include "lib/shape.h"
 #include "lib/writer.h"
 
 /* What grows best in a real outline, with real primaries or without: everywhere alike, so that veins of all orders have time to come one after the other. */
@@ -201,6 +202,19 @@ static gboolean write_drawing(const Writer *w, const char *image, const char *fi
 
 /* ---- the parameter file ---- */
 
+/* The drawing has no petiole, so the file tells of it. */
+static gboolean keep_petiole(const VenLeaf *leaf, Params *p)
+{
+    double length, width;
+    char text[2][32];
+    if (!shape_real_petiole(leaf, &length, &width))
+        return TRUE;
+    g_ascii_formatd(text[0], sizeof text[0], "%.4f", MIN(length, 10.0));
+    g_ascii_formatd(text[1], sizeof text[1], "%.4f", MIN(width, 1.0));
+    return params_set(p, PARAM_MESH_PETIOLE_LENGTH, text[0], "", NULL) &&
+           (params_is_given(p, PARAM_MESH_PETIOLE_WIDTH) || params_set(p, PARAM_MESH_PETIOLE_WIDTH, text[1], "", NULL));
+}
+
 /* The parameters that were given, and where the files are now. */
 static char *parameter_text(const VenLeaf *leaf, const char *scan, const char *back, const char *drawing)
 {
@@ -210,7 +224,8 @@ static char *parameter_text(const VenLeaf *leaf, const char *scan, const char *b
                   params_set(p, PARAM_VEINS_DRAWING, drawing, "", NULL) &&
                   (lsystem || params_set(p, PARAM_VEINS_ORIGIN, "grown", "", NULL)) &&
                   (!back || params_set(p, PARAM_SCAN_BACK, back, "", NULL));
-    g_assert(ok); /* names of files, and a word of the table */
+    ok = ok && keep_petiole(leaf, p);
+    g_assert(ok); /* names of files, numbers in their ranges, and a word of the table */
     GString *s = g_string_new("# Grow and shape this leaf: venation grow FILE, venation shape FILE. Correct outline and veins in the drawing,\n"
                               "# with Inkscape; with origin = drawn the veins are those of the drawing alone.\n");
     const char *section = NULL;

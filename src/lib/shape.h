@@ -60,6 +60,9 @@ Bent shape_level_bend(const VenShape *s, uint32_t level, const Bent *bent);
 void shape_add_levels(VenShape *s);
 void shape_level_clear(Level *l);
 
+/* The petiole as the scan shows it, leaf lengths; width 0: it does not tell. False where there is none, or the parameters say how long it is. */
+bool shape_real_petiole(const VenLeaf *leaf, double *length, double *width);
+
 /* What vein solids are like, with the petiole of the scan where there is one; `coarser` as below. */
 SolidDef shape_solids(const VenLeaf *leaf, double coarser);
 

@@ -71,23 +71,28 @@ void bent_clear(Bent *b)
     *b = (Bent){0};
 }
 
-/* The petiole of a real leaf is as long and as wide as the scan shows it. The stub of one that was cut off tells neither: it gets enough length to look
- * like a stalk, and the width that the veins ask for. */
-static void real_petiole(const VenLeaf *leaf, SolidDef *def)
+/* The stub of one that was cut off tells neither length nor width: it gets enough length to look like a stalk, and the width that the veins ask for. */
+bool shape_real_petiole(const VenLeaf *leaf, double *length, double *width)
 {
     const double least = 6.0; /* widths */
     const Profile *f = leaf->ground ? leaf->ground->profile : NULL;
     if (!f || !f->has_stalk || params_is_given(leaf->params, PARAM_MESH_PETIOLE_LENGTH))
-        return;
-    double segments = leaf->length / vec_dist(leaf->ground->base, leaf->ground->tip); /* a pixel */
+        return false;
+    double pixel = 1.0 / vec_dist(leaf->ground->base, leaf->ground->tip); /* leaf lengths */
     bool stub = f->stalk_length < least * f->stalk_width;
-    def->petiole_length = MAX(f->stalk_length, least * f->stalk_width) * segments;
-    def->petiole_radius = stub ? 0.0 : 0.5 * f->stalk_width * segments;
+    *length = MAX(f->stalk_length, least * f->stalk_width) * pixel;
+    *width = stub ? 0.0 : f->stalk_width * pixel;
+    return true;
 }
 
 SolidDef shape_solids(const VenLeaf *leaf, double coarser)
 {
     SolidDef def = settings_solids(leaf->params, leaf->length, coarser);
-    real_petiole(leaf, &def);
+    double length, width;
+    if (shape_real_petiole(leaf, &length, &width)) {
+        def.petiole_length = length * leaf->length;
+        if (!params_is_given(leaf->params, PARAM_MESH_PETIOLE_WIDTH))
+            def.petiole_radius = 0.5 * width * leaf->length;
+    }
     return def;
 }

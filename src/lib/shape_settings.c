@@ -67,6 +67,7 @@ SolidDef settings_solids(const Params *p, double length, double coarser)
     d.scale = params_number(p, PARAM_MESH_VEIN_SCALE);
     d.offset = params_number(p, PARAM_MESH_VEIN_OFFSET);
     d.petiole_length = params_number(p, PARAM_MESH_PETIOLE_LENGTH) * length;
+    d.petiole_radius = 0.5 * params_number(p, PARAM_MESH_PETIOLE_WIDTH) * length;
     d.petiole_bend = params_number(p, PARAM_MESH_PETIOLE_BEND);
     d.sides = MAX(3, (uint32_t)((double)params_integer(p, PARAM_MESH_VEIN_SIDES) / sqrt(coarser)));
     d.spacing = 1.2 * params_number(p, PARAM_MESH_SPACING) * length * coarser; /* nodes a little nearer than a full edge may go */
