@@ -7,13 +7,10 @@
 #include "geom/textfile.h"
 
 enum { LARGEST_FILE = 16 << 20, SHOWN = 40 };
-#define FARTHEST 1e6 /* pixels */
-
-static bool is_gap(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
 
 static const char *skip_gaps(const char *s)
 {
-    while (is_gap(*s))
+    while (tracing_is_gap(*s))
         s++;
     return s;
 }
@@ -38,7 +35,7 @@ static bool read_number(const char **s, double *out)
 {
     char *end;
     *out = g_ascii_strtod(*s, &end);
-    if (end == *s || !(*end == '\0' || is_gap(*end)) || !(fabs(*out) <= FARTHEST))
+    if (end == *s || !(*end == '\0' || tracing_is_gap(*end)) || !(fabs(*out) <= TRACING_FARTHEST))
         return false;
     *s = skip_gaps(end);
     return true;

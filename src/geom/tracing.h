@@ -11,4 +11,8 @@ bool tracing_is(const char *file);
  * as a polygon of SVG with these points. No base and no tip are marked. False with OUTLINE_ERROR_READ or _SYNTAX, naming file and line. */
 bool tracing_read(const char *file, SvgShape *out, GError **error);
 
+/* What both kinds of tracings, margins and veins (import/drawing_file.h), have in common: what parts numbers, and how large they may be, pixels. */
+static inline bool tracing_is_gap(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
+#define TRACING_FARTHEST 1e6
+
 #endif

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "geom/textfile.h"
+#include "geom/tracing.h"
 #include "import/drawing_file.h"
 #include "import/names.h"
 #include "scan/centre.h"
@@ -12,7 +13,6 @@ enum {
     MARGIN = 2,              /* of them, around it */
 };
 
-#define FARTHEST 1e6 /* pixels */
 #define MEETS 3.0    /* pixels between the ends of what is closed */
 
 /* How an outline of veins differs from a vein: its ends are no farther apart than some of its mean width, and it is slender; from a
@@ -34,8 +34,6 @@ typedef struct {
     bool open;              /* the last stroke goes on */
     GError **error;
 } Reading;
-
-static bool is_blank(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
 
 static bool bad_line(const Reading *r, guint line, const char *text, const char *what)
 {
@@ -68,21 +66,21 @@ static void add_point(Reading *r, Vec2 p, guint line)
 static void count_words(const char *s, double v[3], guint *numbers, guint *others)
 {
     *numbers = *others = 0;
-    while (is_blank(*s))
+    while (tracing_is_gap(*s))
         s++;
     while (*s != '\0') {
         char *end;
         double value = g_ascii_strtod(s, &end);
-        if (end != s && (*end == '\0' || is_blank(*end))) {
+        if (end != s && (*end == '\0' || tracing_is_gap(*end))) {
             if (*numbers < 3)
                 v[*numbers] = value;
             ++*numbers;
         } else {
             ++*others;
         }
-        while (*s != '\0' && !is_blank(*s))
+        while (*s != '\0' && !tracing_is_gap(*s))
             s++;
-        while (is_blank(*s))
+        while (tracing_is_gap(*s))
             s++;
     }
 }
@@ -103,7 +101,7 @@ static bool read_line(Reading *r, char *text, guint line)
     }
     if (numbers != 2 || others > 0)
         return bad_line(r, line, g_strstrip(text), allowed);
-    if (!(fabs(v[0]) <= FARTHEST && fabs(v[1]) <= FARTHEST))
+    if (!(fabs(v[0]) <= TRACING_FARTHEST && fabs(v[1]) <= TRACING_FARTHEST))
         return bad_line(r, line, g_strstrip(text), "is no point of an image: x and y are -1000000 to 1000000");
     add_point(r, vec2(v[0], v[1]), line);
     return true;

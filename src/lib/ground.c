@@ -60,6 +60,13 @@ bool ground_place(const Ground *g, const Params *p, const char *file, SvgPlace *
     return svgplace_find(file, &under, place, NULL);
 }
 
+char *ground_lies(const Ground *g, SvgPlace *place)
+{
+    if (place)
+        return g_steal_pointer(&place->how);
+    return g->scan ? g_strdup("its numbers, which are pixels of the scan") : NULL;
+}
+
 /* ---- all of it ---- */
 
 static gboolean find(Ground *g, const Params *p, GroundScan *sheet, bool veins, GError **error)

@@ -92,7 +92,7 @@ static Polygon *drawn_outline(Ground *g, const Params *p, GError **error)
     SvgPlace place = {0};
     bool placed = g->scan && *file && ground_place(g, p, file, &place);
     Polygon *outline = settings_outline(p, placed ? &place : NULL, &g->base, &g->tip, error);
-    g->outline_lies = placed ? g_steal_pointer(&place.how) : g->scan && *file ? g_strdup("its numbers, which are pixels of the scan") : NULL;
+    g->outline_lies = *file ? ground_lies(g, placed ? &place : NULL) : NULL;
     svgplace_clear(&place);
     return outline;
 }

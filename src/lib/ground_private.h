@@ -35,6 +35,9 @@ gboolean ground_blame(const Params *p, ParamId id, GError **error);
 /* Where a drawing lies on the scan; false where that can't be told: what is wrong with the file its reader will say. */
 bool ground_place(const Ground *g, const Params *p, const char *file, SvgPlace *place);
 
+/* How a drawing lies on the scan, in words: as `place` has it, which gives its words away, or NULL by its numbers. NULL without a scan. */
+char *ground_lies(const Ground *g, SvgPlace *place);
+
 /* ---- ground_scan.c ---- */
 
 /* The scan and its back, read anew or lent by the sheet; *back_profiles receives the leaves on the back, NULL without one. */

@@ -27,7 +27,7 @@ static gboolean read_drawing(Ground *g, const Params *p, GError **error)
     bool placed = svg && g->scan && ground_place(g, p, file, &place);
     g->drawing = svg ? drawing_read_svg(file, 1e-3 * vec_dist(g->base, g->tip), placed ? &place.map : NULL, error)
                      : drawing_read_tracing(file, height, error);
-    g->drawing_lies = placed ? g_steal_pointer(&place.how) : g->scan ? g_strdup("its numbers, which are pixels of the scan") : NULL;
+    g->drawing_lies = ground_lies(g, placed ? &place : NULL);
     svgplace_clear(&place);
     if (!g->drawing)
         return FALSE;
