@@ -19,6 +19,7 @@ typedef int64_t TwoMask __attribute__((vector_size(16)));
 #define FOUR_PICK(mask, a, b) ((Four)(((FourMask)(a) & (mask)) | ((FourMask)(b) & ~(mask))))
 #define FOUR_ABS(a) ((Four)((FourMask)(a) & FOUR_MASK(INT64_MAX)))
 #define FOUR_MASK(v) ((FourMask){(v), (v), (v), (v)})
+#define FOUR_NODES(v) ((FourNodes){(v), (v), (v), (v)})
 #define EIGHT_NODES(v) ((EightNodes){(v), (v), (v), (v), (v), (v), (v), (v)})
 
 static inline __attribute__((always_inline)) int two_any(TwoMask m)
@@ -35,6 +36,7 @@ static inline __attribute__((always_inline)) int four_any(const FourMask *m)
     TwoMask two = __builtin_shufflevector(*m, *m, 0, 1) | __builtin_shufflevector(*m, *m, 2, 3);
     return two_any(two);
 }
+
 /* 1 / √ of each. */
 static inline __attribute__((always_inline)) void four_inverse_root(const Four *a, Four *out)
 {

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "geom/vectors.h"
+#include "sim/pull.h"
 #include "sim/state.h"
 
 #define BLOCK_INLINE static inline __attribute__((always_inline))
@@ -107,9 +107,8 @@ BLOCK_INLINE void block_store(const Columns *c, uint32_t k, uint32_t n, const Bl
     memcpy(c->near2 + k, &b->d2, sizeof *c->near2 * n);
     if (!c->draw.x)
         return;
-    Four scale;
-    four_inverse_root(&b->d2, &scale);
-    Four x = b->dx * scale, y = b->dy * scale;
+    Four x, y;
+    four_pulls(&b->dx, &b->dy, &b->d2, &x, &y);
     memcpy(c->draw.x + (k - c->draw.first), &x, sizeof(double) * n);
     memcpy(c->draw.y + (k - c->draw.first), &y, sizeof(double) * n);
 }

@@ -176,6 +176,22 @@ static bool finished(Simulation *s, uint32_t k)
     return true;
 }
 
+/* Whether source_remove_reached does anything. */
+bool source_is_late(const Simulation *s, uint32_t k)
+{
+    if (!(s->mark[k] & (MARK_WITHIN | MARK_REACHED)))
+        return false;
+    const Source *src = s->def.pattern == PATTERN_OPEN ? NULL : &s->source[k];
+    bool within = false, waiting = false, reached = s->mark[k] & MARK_REACHED;
+    for (uint32_t i = 0; i < source_members(s, k); i++) {
+        double d2 = vec_dist2(s->place[k], s->veins.pos[source_member(s, k, i)]);
+        bool counts = !reached || (src->tagged >> i & 1);
+        within |= counts && d2 < kill2(s);
+        waiting |= reached && counts && !(src->spent >> i & 1) && d2 > past2(s);
+    }
+    return within || (reached && !waiting);
+}
+
 bool source_remove_reached(Simulation *s, uint32_t k)
 {
     if (!(s->mark[k] & (MARK_WITHIN | MARK_REACHED)) || !finished(s, k))

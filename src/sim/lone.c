@@ -2,7 +2,7 @@
  * shown of that node's child for all their places together, nothing needs to be kept of each. */
 #include <string.h>
 
-#include "geom/vectors.h"
+#include "sim/pull.h"
 #include "sim/state.h"
 
 void crowd_rest(Simulation *s, Crowd *c, uint32_t node)
@@ -54,79 +54,34 @@ bool crowd_turns(const Simulation *s, const Crowd *c, uint32_t node)
            (v->parent[node] == c->lone && vec_dist2(p, old) * POINTS_SLACK <= box_dist2(c->place, old));
 }
 
-/* Pulls of m sources, 1 to 4, towards p; the last lanes repeat one of them. */
-static inline __attribute__((always_inline)) void draw_four(const Vec2 *place, uint32_t m, Vec2 p, Four *x, Four *y, Four *most2)
+/* Pulls of four sources on a node at p, in an order of their own: first, third, second, fourth. */
+static inline __attribute__((always_inline)) void pull_four(const Vec2 *place, Vec2 p, Four *d2, Four *x, Four *y)
 {
-    Four low, high, scale;
-    if (m == 4) {
-        memcpy(&low, place, sizeof low);
-        memcpy(&high, place + 2, sizeof high);
-    } else {
-        low = (Four){place[0].x, place[0].y, place[m > 1].x, place[m > 1].y};
-        high = (Four){place[m - 1].x, place[m - 1].y, place[0].x, place[0].y};
-    }
-    Four dx = __builtin_shufflevector(low, high, 0, 2, 4, 6) - FOUR(p.x), dy = __builtin_shufflevector(low, high, 1, 3, 5, 7) - FOUR(p.y);
-    Four d2 = dx * dx + dy * dy;
-    *most2 = FOUR_PICK(d2 > *most2, d2, *most2);
-    four_inverse_root(&d2, &scale);
-    *x = dx * scale;
-    *y = dy * scale;
+    Four low, high;
+    memcpy(&low, place, sizeof low);
+    memcpy(&high, place + 2, sizeof high);
+    Four dx = __builtin_shufflevector(low, high, 0, 4, 2, 6) - FOUR(p.x), dy = __builtin_shufflevector(low, high, 1, 5, 3, 7) - FOUR(p.y);
+    *d2 = dx * dx + dy * dy;
+    four_pulls(&dx, &dy, d2, x, y);
 }
 
-static inline double most_of(const Four *v) { return MAX(MAX((*v)[0], (*v)[1]), MAX((*v)[2], (*v)[3])); }
-
-/* Draws n sources to p; returns the largest squared distance. */
-static WIDE double draw_run(const Vec2 *place, uint32_t n, Vec2 p, double *x, double *y)
+WIDE double lone_sum(const Vec2 *place, uint32_t n, Vec2 p, Vec2 *sum)
 {
-    Four most2 = FOUR(-1.0), dx, dy;
-    for (uint32_t k = 0; k < n; k += 4) {
-        uint32_t m = MIN(n - k, 4);
-        draw_four(place + k, m, p, &dx, &dy, &most2);
-        if (m == 4) {
-            memcpy(x + k, &dx, sizeof dx);
-            memcpy(y + k, &dy, sizeof dy);
-        } else {
-            memcpy(x + k, &dx, sizeof *x * m);
-            memcpy(y + k, &dy, sizeof *y * m);
-        }
+    Four most2 = FOUR(-1.0), d2, x, y, all_x = FOUR(0.0), all_y = FOUR(0.0);
+    uint32_t k = 0;
+    for (; k + 4 <= n; k += 4) {
+        pull_four(place + k, p, &d2, &x, &y);
+        most2 = FOUR_PICK(d2 > most2, d2, most2);
+        all_x += x;
+        all_y += y;
     }
-    return most_of(&most2);
-}
-
-/* The sum waits for one addition after the other, and the roots for the divider: they wait at the same time. */
-WIDE double lone_sum(const Vec2 *place, uint32_t n, Vec2 p, Vec2 *sum, double least2)
-{
-    Four most2 = FOUR(least2), x, y;
-    Two xy = {sum->x, sum->y};
-    for (uint32_t k = 0; k < n; k += 4) {
-        uint32_t m = MIN(n - k, 4);
-        draw_four(place + k, m, p, &x, &y, &most2);
-        Four even = __builtin_shufflevector(x, y, 0, 4, 2, 6), odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-        xy += __builtin_shufflevector(even, even, 0, 1);
-        if (m > 1)
-            xy += __builtin_shufflevector(odd, odd, 0, 1);
-        if (m > 2)
-            xy += __builtin_shufflevector(even, even, 2, 3);
-        if (m > 3)
-            xy += __builtin_shufflevector(odd, odd, 2, 3);
+    if (k < n) { /* and slots behind the last one, which don't count */
+        FourMask mine = FOUR_MASK((int64_t)(n - k)) > (FourMask){0, 2, 1, 3};
+        pull_four(place + k, p, &d2, &x, &y);
+        most2 = FOUR_PICK((d2 > most2) & mine, d2, most2);
+        all_x += (Four)((FourMask)x & mine);
+        all_y += (Four)((FourMask)y & mine);
     }
-    *sum = vec2(xy[0], xy[1]);
-    return most_of(&most2);
-}
-
-uint32_t crowd_draw_lone(const Simulation *s, Crowd *c, const Draw *draw)
-{
-    Vec2 p = s->veins.pos[c->lone];
-    uint32_t n = 0;
-    c->most2 = -1.0;
-    c->undrawn = draw->at_once;
-    for (uint32_t r = 0; r < CROWD_SIDE; r++) {
-        uint32_t first = c->first[r], count = c->last[r] - first;
-        n += count;
-        if (count == 0 || draw->at_once)
-            continue;
-        double most2 = draw_run(s->place + first, count, p, draw->x + (first - draw->first), draw->y + (first - draw->first));
-        c->most2 = MAX(c->most2, most2);
-    }
-    return n;
+    *sum = vec_add(*sum, vec2((all_x[0] + all_x[1]) + (all_x[2] + all_x[3]), (all_y[0] + all_y[1]) + (all_y[2] + all_y[3])));
+    return MAX(MAX(most2[0], most2[1]), MAX(most2[2], most2[3]));
 }

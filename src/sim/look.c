@@ -79,13 +79,15 @@ static bool concerned(const Simulation *s, uint32_t k)
     return !(s->mark[k] & MARK_ZONED) || boxtree_any_in(&s->fresh_tree, s->veins.pos, zone_as_box(s->zone[k]));
 }
 
-static uint32_t look_each(Simulation *s, const uint32_t *slot, uint32_t n, const Draw *draw)
+static uint32_t look_each(Simulation *s, const Crowd *c, const uint32_t *slot, uint32_t n, const Draw *draw)
 {
-    uint32_t seen = 0;
+    uint32_t seen = 0, r = 0;
     for (uint32_t i = 0; i < n; i++)
         if (concerned(s, slot[i])) {
             source_look_closed(s, slot[i]);
-            pulls_draw(s, slot[i], slot[i] + 1, draw);
+            while (slot[i] >= c->last[r])
+                r++;
+            pulls_draw(s, slot[i], slot[i] + 1, &draw[r]);
             seen++;
         }
     return seen;
@@ -102,7 +104,7 @@ static uint32_t look_all_alone(Simulation *s, const Crowd *c, const Draw *draw)
                 look_alone(s, k);
                 seen++;
             }
-        pulls_draw(s, c->first[r], c->last[r], draw);
+        pulls_draw(s, c->first[r], c->last[r], &draw[r]);
     }
     return seen;
 }
@@ -122,22 +124,22 @@ static void crowd_fetch(const Simulation *s, const Crowd *c)
 }
 
 /* Those that pull one node each. `parted`: one of a closed pattern may no longer be like that. */
-static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, const Draw *draw, bool *parted)
+static uint32_t look_together(Simulation *s, Crowd *c, Square *q, Sight *sight, const Draw *draw, bool *parted)
 {
     if (c->most2 < 0.0)
         return 0;
     bool open = s->def.pattern == PATTERN_OPEN, lone = c->lone != NO_POINT;
-    uint32_t sole = lone ? crowd_sole(s, c) : NO_POINT;
-    if (sole != NO_POINT && crowd_turns(s, c, sole) && (open || !crowd_has_rivals(s, c, sole, sight))) {
-        c->lone = sole;
-        return crowd_draw_lone(s, c, draw);
+    uint32_t sole = lone ? crowd_sole(s, c, q) : NO_POINT;
+    if (sole != NO_POINT && crowd_turns(s, c, sole) && (open || !crowd_has_rivals(s, c, q, sole, sight))) {
+        c->lone = sole; /* most2 is renewed as they pull */
+        return c->plain;
     }
     if (!lone)
         crowd_fetch(s, c);
-    bool few = c->plain >= CROWD_LEAST && crowd_sight(s, c, sight);
+    bool few = c->plain >= CROWD_LEAST && crowd_sight(s, c, q, sight);
     crowd_wake(s, c);
     if (open && few && sight->nearest.n == 0) {
-        pulls_draw(s, c->first[0], c->last[0], draw); /* its cells are not in several runs */
+        pulls_draw(s, c->first[0], c->last[0], &draw[0]); /* its cells are not in several runs */
         return 0;
     }
     if (!few || sight->nearest.n == 0) {
@@ -145,13 +147,13 @@ static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, const Draw 
             *parted = true;
         return look_all_alone(s, c, draw);
     }
-    bool together = sight->nearest.n == 1 && sight->rival.n == 0 && !s->reach && draw->x;
+    bool together = sight->nearest.n == 1 && sight->rival.n == 0 && !s->reach && draw[0].x;
     uint32_t seen = 0;
     double most2 = -1.0;
     for (uint32_t r = 0; r < CROWD_SIDE; r++) {
         uint32_t first = c->first[r], last = c->last[r];
-        double run2 = open ? look_open_run(s, first, last, sight, draw, &together)
-                           : look_closed_run(s, first, last, sight, draw, &together, parted);
+        double run2 = open ? look_open_run(s, first, last, sight, &draw[r], &together)
+                           : look_closed_run(s, first, last, sight, &draw[r], &together, parted);
         most2 = MAX(most2, run2);
         seen += last - first;
     }
@@ -163,11 +165,11 @@ static uint32_t look_together(Simulation *s, Crowd *c, Sight *sight, const Draw 
     return seen;
 }
 
-uint32_t crowd_look(Simulation *s, Crowd *c, Sight *sight, const Draw *draw)
+uint32_t crowd_look(Simulation *s, Crowd *c, Square *q, Sight *sight, const Draw *draw)
 {
     enum { SOME = 128 };
     if (s->def.pattern == PATTERN_OPEN)
-        return look_together(s, c, sight, draw, NULL);
+        return look_together(s, c, q, sight, draw, NULL);
     uint32_t some[SOME], *apart = some, n = 0;
     bool any = c->restless || c->zone.x0 <= c->zone.x1;
     if (any && (c->restless || boxtree_any_in(&s->fresh_tree, s->veins.pos, zone_as_box(c->zone)))) {
@@ -176,7 +178,8 @@ uint32_t crowd_look(Simulation *s, Crowd *c, Sight *sight, const Draw *draw)
             list_apart(s, c, apart = g_new(uint32_t, n), n);
     }
     bool parted = false;
-    uint32_t seen = look_together(s, c, sight, draw, &parted) + look_each(s, apart, n, draw);
+    uint32_t seen = look_together(s, c, q, sight, draw, &parted);
+    seen += look_each(s, c, apart, n, draw);
     if (apart != some)
         g_free(apart);
     if ((any || parted) && c->lone == NO_POINT)

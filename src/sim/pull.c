@@ -1,7 +1,7 @@
 /* S(v): who pulls whom (Runions 2005, eq. 1). */
 #include <string.h>
 
-#include "geom/vectors.h"
+#include "sim/pull.h"
 #include "sim/state.h"
 
 /* Members that a source apart pulls now. A reached source of a closed pattern waits for its tagged veins alone, and not for those that
@@ -23,55 +23,57 @@ static uint8_t pulling(const Simulation *s, uint32_t k)
     return mask;
 }
 
-/* The entry of node v, which slot k is the next to pull. */
-static uint32_t pulled_entry(Simulation *s, uint32_t v, uint32_t k)
-{
-    uint32_t i = s->veins.pull[v];
-    if (i < s->n_pulled && s->pulled[i].node == v)
-        return i;
-    if (s->n_pulled == s->cap_pulled) {
-        s->cap_pulled = MAX(s->cap_pulled * 2, 1024);
-        s->pulled = g_renew(Pulled, s->pulled, s->cap_pulled);
-    }
-    s->pulled[s->n_pulled] = (Pulled){.node = v, .first = k};
-    return s->veins.pull[v] = s->n_pulled++;
-}
+/* ---- sums under way ---- */
 
-/* The sums of four nodes under way: sources beside each other mostly pull the same few. Each sum is that of its pulls one after the other,
- * in the order of the slots; the nothing that other pulls add to it changes no bit. */
-typedef struct {
-    Four x, y;
-    EightNodes node, count; /* in two halves of a lane of x each; node NO_POINT: none */
-    FourNodes line[4];      /* node i, to compare four slots with */
-    uint32_t entry[4], next; /* in pulled[]; the one to go next */
-    uint32_t live;           /* sources that pull */
-} Sums;
-
-static void sums_put(Simulation *s, const Sums *sums, uint32_t i, uint32_t k)
+/* Line i makes way. */
+static void sums_put(const Sums *sums, uint32_t i)
 {
     if (sums->node[2 * i] == NO_POINT)
         return;
-    Pulled *p = &s->pulled[sums->entry[i]];
-    p->sum = vec2(sums->x[i], sums->y[i]);
-    p->count = sums->count[2 * i];
-    p->last = k;
+    Pulled *p = tally_entry(sums->tally, sums->node[2 * i]);
+    p->sum = vec_add(p->sum, vec2(sums->x[i], sums->y[i]));
+    p->count += sums->count[2 * i];
+    p->first = MIN(p->first, sums->first[i]);
+    p->last = MAX(p->last, sums->last[i]);
 }
 
-/* Makes room for node v. */
-static __attribute__((noinline)) void sums_turn(Simulation *s, Sums *sums, uint32_t v, uint32_t k)
+void sums_init(Sums *sums, Tally *tally)
+{
+    *sums = (Sums){.node = EIGHT_NODES(NO_POINT), .run_first = UINT32_MAX, .tally = tally};
+    memset(sums->line, 0xff, sizeof sums->line); /* NO_POINT */
+}
+
+void sums_end(const Sums *sums)
+{
+    for (uint32_t i = 0; i < 4; i++)
+        sums_put(sums, i);
+}
+
+/* A line for node v. */
+static __attribute__((noinline)) uint32_t sums_turn(Sums *sums, uint32_t v)
 {
     uint32_t i = sums->next++ % 4;
-    sums_put(s, sums, i, k);
-    sums->entry[i] = pulled_entry(s, v, k);
-    const Pulled *p = &s->pulled[sums->entry[i]];
+    sums_put(sums, i);
     sums->node[2 * i] = sums->node[2 * i + 1] = v;
-    sums->line[i] = (FourNodes){v, v, v, v};
-    sums->count[2 * i] = sums->count[2 * i + 1] = p->count;
-    sums->x[i] = p->sum.x;
-    sums->y[i] = p->sum.y;
+    sums->count[2 * i] = sums->count[2 * i + 1] = 0;
+    sums->line[i] = FOUR_NODES(v);
+    sums->x[i] = sums->y[i] = 0.0;
+    sums->first[i] = sums->run_first;
+    sums->last[i] = sums->run_last;
+    return i;
 }
 
-/* Where node v is; 4: nowhere. */
+/* From now on slots first … last-1 may pull any of those under way. */
+static void sums_begin(Sums *sums, uint32_t first, uint32_t last)
+{
+    sums->run_first = first;
+    sums->run_last = last;
+    for (uint32_t i = 0; i < 4; i++) {
+        sums->first[i] = MIN(sums->first[i], first);
+        sums->last[i] = MAX(sums->last[i], last);
+    }
+}
+
 static inline uint32_t sums_find(const Sums *sums, uint32_t v)
 {
     uint32_t i = 0;
@@ -80,18 +82,21 @@ static inline uint32_t sums_find(const Sums *sums, uint32_t v)
     return i;
 }
 
-static void sums_add(Simulation *s, Sums *sums, uint32_t v, uint32_t k, double x, double y)
+/* Adds `count` pulls by slots first … last-1, or some of them. */
+static void sums_add(Sums *sums, uint32_t v, uint32_t first, uint32_t last, Vec2 pull, uint32_t count)
 {
     uint32_t i = sums_find(sums, v);
-    if (i == 4) {
-        i = sums->next % 4;
-        sums_turn(s, sums, v, k);
-    }
-    sums->x[i] += x;
-    sums->y[i] += y;
-    sums->count[2 * i]++;
-    sums->count[2 * i + 1]++;
+    if (i == 4)
+        i = sums_turn(sums, v);
+    sums->x[i] += pull.x;
+    sums->y[i] += pull.y;
+    sums->count[2 * i] += count;
+    sums->count[2 * i + 1] += count;
+    sums->first[i] = MIN(sums->first[i], first);
+    sums->last[i] = MAX(sums->last[i], last);
 }
+
+/* ---- what sources pull ---- */
 
 WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw)
 {
@@ -99,42 +104,38 @@ WIDE void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const D
         return;
     const Vec2 *place = s->place, *pos = s->veins.pos;
     const uint32_t *near = s->near;
-    const double *near2 = s->near2;
     double *restrict x = draw->x + (first - draw->first), *restrict y = draw->y + (first - draw->first);
     uint32_t k = first;
     for (; k + 4 <= last; k += 4, x += 4, y += 4) {
-        Four dx, dy, d2;
+        Four dx, dy, d2, pull_x, pull_y;
         for (uint32_t l = 0; l < 4; l++) {
             uint32_t v = near[k + l];
             Vec2 towards = vec_sub(place[k + l], pos[v < NEAR_APART ? v : 0]);
             dx[l] = towards.x;
             dy[l] = towards.y;
         }
-        memcpy(&d2, near2 + k, sizeof d2);
-        four_inverse_root(&d2, &d2);
-        dx *= d2;
-        dy *= d2;
-        memcpy(x, &dx, sizeof dx);
-        memcpy(y, &dy, sizeof dy);
+        memcpy(&d2, s->near2 + k, sizeof d2);
+        four_pulls(&dx, &dy, &d2, &pull_x, &pull_y);
+        memcpy(x, &pull_x, sizeof pull_x);
+        memcpy(y, &pull_y, sizeof pull_y);
     }
     for (; k < last; k++, x++, y++) {
         uint32_t v = near[k];
-        Vec2 towards = vec_sub(place[k], pos[v < NEAR_APART ? v : 0]);
-        double scale = 1.0 / sqrt(near2[k]);
-        *x = towards.x * scale;
-        *y = towards.y * scale;
+        Vec2 pull = pull_towards(vec_sub(place[k], pos[v < NEAR_APART ? v : 0]));
+        *x = pull.x;
+        *y = pull.y;
     }
 }
 
-/* Pulls of a source that is not plain. */
-static void pull_apart(Simulation *s, Sums *sums, uint32_t k, double x, double y)
+void source_pull(Simulation *s, uint32_t k, Sums *sums)
 {
     if (s->mark[k] & MARK_IDLE)
         return;
     if (!source_is_apart(s, k)) {
-        if (s->near[k] == NO_POINT || s->near2[k] <= past2(s))
+        uint32_t v = s->near[k];
+        if (v == NO_POINT || s->near2[k] <= past2(s))
             return;
-        sums_add(s, sums, s->near[k], k, x, y);
+        sums_add(sums, v, k, k + 1, pull_towards(vec_sub(s->place[k], s->veins.pos[v])), 1);
         sums->live++;
         return;
     }
@@ -143,52 +144,54 @@ static void pull_apart(Simulation *s, Sums *sums, uint32_t k, double x, double y
     for (uint8_t i = 0; mask; i++, mask >>= 1)
         if (mask & 1) {
             uint32_t v = s->source[k].hood.m[i];
-            Vec2 towards = vec_sub(s->place[k], s->veins.pos[v]);
-            towards = vec_scale(towards, 1.0 / sqrt(vec_norm2(towards)));
-            sums_add(s, sums, v, k, towards.x, towards.y);
+            sums_add(sums, v, k, k + 1, pull_towards(vec_sub(s->place[k], s->veins.pos[v])), 1);
         }
 }
 
+/* ---- crowds ---- */
+
 /* Does one of four slots pull none of the nodes under way? */
-static inline __attribute__((always_inline)) bool any_new(const Sums *sums, FourNodes near)
+static inline __attribute__((always_inline)) bool any_new(const FourNodes *line, FourNodes near)
 {
-    const FourNodes *n = sums->line;
-    TwoMask two = (TwoMask) ~((near == n[0]) | (near == n[1]) | (near == n[2]) | (near == n[3]));
+    TwoMask two = (TwoMask) ~((near == line[0]) | (near == line[1]) | (near == line[2]) | (near == line[3]));
     return (two[0] | two[1]) != 0;
 }
 
 /* Makes room for all that slots k … k + 3 pull: four lines suffice, the last four that came. */
-static __attribute__((noinline)) void sums_make_room(Simulation *s, Sums *sums, uint32_t k)
+static __attribute__((noinline)) void sums_make_room(const Simulation *s, Sums *sums, uint32_t k)
 {
     for (uint32_t l = 0; l < 4;) {
         uint32_t v = s->near[k + l];
         l++;
         if (sums_find(sums, v) == 4) {
-            sums_turn(s, sums, v, k);
+            sums_turn(sums, v);
             l = 0;
         }
     }
 }
 
 /* Slots that are not plain, and the last few. */
-static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, uint32_t first, uint32_t last, bool remove, const double *x,
-                                                    const double *y)
+static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, uint32_t first, uint32_t last, const Draw *draw, Numbers *late)
 {
-    for (uint32_t k = first; k < last; k++, x++, y++) {
+    for (uint32_t k = first; k < last; k++) {
         if (s->mark[k] == 0) {
-            sums_add(s, sums, s->near[k], k, *x, *y);
+            sums_add(sums, s->near[k], k, k + 1, vec2(draw->x[k - draw->first], draw->y[k - draw->first]), 1);
             sums->live++;
-        } else if (!remove || !source_remove_reached(s, k)) {
-            pull_apart(s, sums, k, *x, *y);
+        } else if (late && source_is_late(s, k)) {
+            numbers_add(late, k);
+        } else {
+            source_pull(s, k, sums);
         }
     }
 }
 
-/* Slots first … last-1, each with what it pulls; x and y are those of the band. */
-static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, bool remove, const double *x, const double *y)
+/* Slots first … last-1, each with what it pulls. The nothing that pulls of other nodes add to a sum changes no bit. */
+static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, const Draw *draw, Numbers *late)
 {
     const uint8_t *mark = s->mark;
     const uint32_t *near = s->near;
+    const double *x = draw->x, *y = draw->y;
+    sums_begin(sums, first, last);
     Four sum_x = sums->x, sum_y = sums->y; /* in registers, and in memory where others change them */
     EightNodes node = sums->node, count = sums->count;
     uint32_t live = 0;
@@ -199,10 +202,10 @@ static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t las
             memcpy(&marks, mark + k, sizeof marks);
             memcpy(&four, near + k, sizeof four);
         }
-        if (marks || any_new(sums, four)) {
+        if (marks || any_new(sums->line, four)) {
             sums->x = sum_x, sums->y = sum_y, sums->count = count;
             if (marks)
-                sums_add_each(s, sums, k, MIN(k + 4, last), remove, x, y);
+                sums_add_each(s, sums, k, MIN(k + 4, last), draw, late);
             else
                 sums_make_room(s, sums, k);
             sum_x = sums->x, sum_y = sums->y, node = sums->node, count = sums->count;
@@ -221,54 +224,40 @@ static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t las
     sums->live += live;
 }
 
-/* Those of a crowd that pull one node, from slot first to last - 1. */
-static void sum_lone(Simulation *s, Sums *sums, Crowd *crowd, uint32_t first, uint32_t last, const double *x, const double *y)
+/* All of them pull one node. */
+static void pull_lone(const Simulation *s, Crowd *c, Sums *sums)
 {
-    uint32_t v = crowd->lone, i = sums_find(sums, v), n = last - first;
-    if (i == 4) {
-        i = sums->next % 4;
-        sums_turn(s, sums, v, first);
+    Vec2 p = s->veins.pos[c->lone], sum = vec2(0.0, 0.0);
+    uint32_t first = UINT32_MAX, last = 0, n = 0;
+    c->most2 = -1.0;
+    for (uint32_t r = 0; r < CROWD_SIDE; r++) {
+        uint32_t count = c->last[r] - c->first[r];
+        if (count == 0)
+            continue;
+        double most2 = lone_sum(s->place + c->first[r], count, p, &sum);
+        c->most2 = MAX(c->most2, most2);
+        first = MIN(first, c->first[r]);
+        last = MAX(last, c->last[r]);
+        n += count;
     }
-    Vec2 sum = vec2(sums->x[i], sums->y[i]);
-    if (crowd->undrawn)
-        crowd->most2 = lone_sum(s->place + first, n, s->veins.pos[v], &sum, crowd->most2);
-    for (uint32_t k = 0; k < n && !crowd->undrawn; k++) {
-        sum.x += x[k];
-        sum.y += y[k];
-    }
-    sums->x[i] = sum.x;
-    sums->y[i] = sum.y;
-    sums->count[2 * i] += n;
-    sums->count[2 * i + 1] += n;
+    sums_add(sums, c->lone, first, last, sum, n);
     sums->live += n;
 }
 
-void pulls_sum(Simulation *s, const Band *band, bool remove, const double *x, const double *y)
+void crowd_pull(Simulation *s, Crowd *c, Sums *sums, const Draw *draw, Numbers *late)
 {
-    Crowd *crowd = s->crowds.crowd;
-    Sums sums = {.node = EIGHT_NODES(NO_POINT)};
-    uint32_t done = band->first;
-    memset(sums.line, 0xff, sizeof sums.line); /* NO_POINT */
-    for (uint32_t r = 0; r < CROWD_SIDE; r++) /* that is the order of the slots */
-        for (uint32_t c = band->first_crowd; c < band->last_crowd; c++) {
-            uint32_t first = crowd[c].first[r], last = crowd[c].last[r];
-            if (crowd[c].lone == NO_POINT || first == last)
-                continue;
-            sum_run(s, &sums, done, first, remove, x + (done - band->first), y + (done - band->first));
-            sum_lone(s, &sums, &crowd[c], first, last, x + (first - band->first), y + (first - band->first));
-            done = last;
-        }
-    sum_run(s, &sums, done, band->last, remove, x + (done - band->first), y + (done - band->first));
-    for (uint32_t i = 0; i < 4; i++)
-        sums_put(s, &sums, i, band->last - 1);
-    for (uint32_t c = band->first_crowd; c < band->last_crowd; c++)
-        crowd[c].undrawn = false;
-    s->n_live += sums.live;
+    if (c->lone != NO_POINT) {
+        pull_lone(s, c, sums);
+        return;
+    }
+    for (uint32_t r = 0; r < CROWD_SIDE; r++)
+        if (c->first[r] < c->last[r])
+            sum_run(s, sums, c->first[r], c->last[r], &draw[r], late);
 }
 
 bool pulls_next(const Simulation *s, const Pulled *p, uint32_t from, Pull *pull)
 {
-    for (uint32_t k = from; k <= p->last; k++) {
+    for (uint32_t k = from; k < p->last; k++) {
         if (s->near[k] == p->node && !(s->mark[k] & MARK_IDLE) && s->near2[k] > past2(s)) {
             *pull = (Pull){k, 0};
             return true;

@@ -67,38 +67,28 @@ static uint32_t rivals(const Simulation *s, Box2 box, const Points *near, Points
 
 static Points few_points(Few *f) { return (Points){f->n, f->v, f->x, f->y}; }
 
-static void square_prepare(const Simulation *s, Square *q)
+void square_prepare(const Simulation *s, const Unit *u, Square *q)
 {
     enum { FEWER = 32 };
+    Box2 place = box_empty();
+    double most2 = -1.0;
+    uint32_t plain = 0;
+    for (uint32_t i = u->first_crowd; i < u->last_crowd; i++) {
+        const Crowd *c = &s->crowds.crowd[i];
+        if (c->most2 < 0.0)
+            continue;
+        place = box_union(place, c->place);
+        most2 = MAX(most2, c->most2);
+        plain += c->plain;
+    }
     q->n_rivals = 0;
     q->n_nearest = POINTS_MOST + 1; /* each crowd for itself */
-    if (q->plain < FEWER)
+    if (plain < FEWER)
         return;
     Points near = {0, q->nearest.v, q->nearest.x, q->nearest.y}, rival = {0, q->rival.v, q->rival.x, q->rival.y};
-    q->n_nearest = nearest_to(s, q->place, q->most2, &near);
+    q->n_nearest = nearest_to(s, place, most2, &near);
     if (s->def.pattern == PATTERN_CLOSED && q->n_nearest && q->n_nearest <= POINTS_MOST)
-        q->n_rivals = rivals(s, q->place, &near, &rival, POINTS_MOST);
-}
-
-void squares_prepare(const Simulation *s, const Group *g)
-{
-    const Crowds *c = &s->crowds;
-    for (uint32_t i = g->first_square; i < g->last_square; i++) {
-        c->square[i].place = box_empty();
-        c->square[i].most2 = -1.0;
-        c->square[i].plain = 0;
-    }
-    for (uint32_t i = c->band[g->first_band].first_crowd; i < c->band[g->last_band - 1].last_crowd; i++) {
-        const Crowd *crowd = &c->crowd[i];
-        if (crowd->square == NO_POINT || crowd->most2 < 0.0)
-            continue;
-        Square *q = &c->square[crowd->square];
-        q->place = box_union(q->place, crowd->place);
-        q->most2 = MAX(q->most2, crowd->most2);
-        q->plain += crowd->plain;
-    }
-    for (uint32_t i = g->first_square; i < g->last_square; i++)
-        square_prepare(s, &c->square[i]);
+        q->n_rivals = rivals(s, place, &near, &rival, POINTS_MOST);
 }
 
 /* ---- crowds ---- */
@@ -119,9 +109,8 @@ static void sight_kin(const Simulation *s, Sight *sight)
     }
 }
 
-uint32_t crowd_sole(const Simulation *s, const Crowd *c)
+uint32_t crowd_sole(const Simulation *s, const Crowd *c, Square *q)
 {
-    Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
     if (!q || q->n_nearest > POINTS_MOST)
         return s->n_fresh <= FRESH_LIST ? points_sole(&s->fresh_points, c->place) : NO_POINT;
     Points listed = {q->n_nearest, q->nearest.v, q->nearest.x, q->nearest.y};
@@ -129,9 +118,8 @@ uint32_t crowd_sole(const Simulation *s, const Crowd *c)
 }
 
 /* Rivals of the nearest ones in sight; more than FEW: too many. */
-static uint32_t sight_rivals(const Simulation *s, const Crowd *c, Sight *sight)
+static uint32_t sight_rivals(const Simulation *s, const Crowd *c, Square *q, Sight *sight)
 {
-    Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
     Points near = few_points(&sight->nearest), far = few_points(&sight->rival);
     if (!q || q->n_nearest > POINTS_MOST || q->n_rivals > POINTS_MOST)
         return rivals(s, c->place, &near, &far, FEW);
@@ -139,19 +127,18 @@ static uint32_t sight_rivals(const Simulation *s, const Crowd *c, Sight *sight)
     return points_rivals(&listed, c->place, &near, s->reach != NULL, &far, FEW);
 }
 
-bool crowd_has_rivals(const Simulation *s, const Crowd *c, uint32_t node, Sight *sight)
+bool crowd_has_rivals(const Simulation *s, const Crowd *c, Square *q, uint32_t node, Sight *sight)
 {
     Few *nearest = &sight->nearest;
     nearest->n = 1;
     nearest->v[0] = node;
     nearest->x[0] = s->veins.pos[node].x;
     nearest->y[0] = s->veins.pos[node].y;
-    return sight_rivals(s, c, sight) > 0;
+    return sight_rivals(s, c, q, sight) > 0;
 }
 
-bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
+bool crowd_sight(const Simulation *s, const Crowd *c, Square *q, Sight *sight)
 {
-    Square *q = c->square == NO_POINT ? NULL : &s->crowds.square[c->square];
     Few *nearest = &sight->nearest, *rival = &sight->rival;
     nearest->n = rival->n = 0;
     Points near = few_points(nearest);
@@ -164,7 +151,7 @@ bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight)
     sight_kin(s, sight);
     if (s->def.pattern == PATTERN_OPEN || n == 0)
         return true;
-    n = sight_rivals(s, c, sight);
+    n = sight_rivals(s, c, q, sight);
     if (n > FEW)
         return false;
     rival->n = n;

@@ -267,9 +267,9 @@ void simulation_free(Simulation *s)
     g_free(s->arrival);
     g_free(s->paths.bits);
     g_free(s->waiting);
-    g_free(s->pull_x);
-    g_free(s->pull_y);
-    g_free(s->taken);
+    lanes_free(s);
+    numbers_clear(&s->nodes);
+    numbers_clear(&s->late);
     g_free(s->pulled);
     g_free(s->fresh);
     quadtree_clear(&s->young);

@@ -108,7 +108,7 @@ void source_weigh(Simulation *s, uint32_t k)
 
 static void reserve(Simulation *s)
 {
-    if (s->n_sources < s->cap_sources)
+    if (s->n_sources + SLOTS_ASIDE < s->cap_sources)
         return;
     s->cap_sources = MAX(s->cap_sources * 2, 256);
 #define RENEW(array, wanted) \

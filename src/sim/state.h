@@ -7,6 +7,7 @@
 #include "geom/quadtree.h"
 #include "geom/reach.h"
 #include "geom/grid.h"
+#include "geom/vectors.h"
 #include "sim/simulation.h"
 
 /* The veins so far. Node arrays are [cap]: 28 bytes a node, plus about 40 in the tree. */
@@ -49,7 +50,7 @@ typedef struct {
 /* A vein node that is pulled in this step: S(v) and the sum of eq. 1. */
 typedef struct {
     uint32_t node;
-    uint32_t first, last; /* slots of the sources that pull it lie from here to there */
+    uint32_t first, last; /* slots of the sources that pull it lie between; last not included */
     uint32_t count;       /* of the pulls */
     Vec2 sum;
     bool barred; /* no child is born where the sum points to */
@@ -60,26 +61,19 @@ typedef struct {
 enum { CROWD_SIDE = 4 };
 typedef struct {
     uint32_t first[CROWD_SIDE], last[CROWD_SIDE]; /* runs of slots, the last one not included */
-    uint32_t square;                              /* NO_POINT for newcomers */
     Box2 place;                                   /* holds all of them */
     uint32_t plain;                               /* how many are not apart, or were when it was last measured */
     double most2;                                 /* not less than any near2 */
     ZoneBox zone;                                 /* holds their zones */
     bool restless;                                /* one that is apart has no zone */
     uint32_t lone; /* unless NO_POINT: the one node that all of them pull, unmarked; near[] and near2[] don't say so */
-    bool undrawn;  /* lone, and drawn as it is summed up */
 } Crowd;
 
-/* Crowds side by side, whose slots follow each other. */
+/* Crowds beside each other, 4 x 4 at most: what a thread takes up at a time. Newcomers are in no square. */
 typedef struct {
-    uint32_t first, last;             /* slots */
     uint32_t first_crowd, last_crowd;
-} Band;
-
-/* Bands with their squares: what a thread takes up at a time. */
-typedef struct {
-    uint32_t first_band, last_band, first_square, last_square;
-} Group;
+    bool square;
+} Unit;
 
 /* Room for points (geom/points.h). */
 typedef struct {
@@ -87,23 +81,18 @@ typedef struct {
     double x[POINTS_MOST + 4], y[POINTS_MOST + 4];
 } PointsRoom;
 
-/* 4 x 4 crowds, and the fresh nodes that may concern one of them. */
+/* The fresh nodes that may concern one of a unit's crowds. */
 typedef struct {
-    Box2 place;
-    double most2;
-    uint32_t plain;
     uint32_t n_nearest, n_rivals; /* above the limit: they did not fit, or it was not worth while */
     PointsRoom nearest, rival;
 } Square;
 
 /* The sources in crowds, as of the last sorting and with what has come since. */
 typedef struct {
-    uint32_t n_crowds, cap_crowds, n_bands, cap_bands, n_groups, cap_groups, n_squares, n_slots;
+    uint32_t n_crowds, cap_crowds, n_units, cap_units, n_slots;
     Crowd *crowd;
-    Band *band;
-    Group *group;
-    Square *square;
-    uint32_t longest; /* slots of a band */
+    Unit *unit;
+    uint32_t longest; /* sources of a crowd */
 } Crowds;
 
 /* Whether turns are faster by all threads or by one: found out again and again (turn.c). */
@@ -114,6 +103,33 @@ typedef struct {
     double time, sources;          /* microseconds in all, sources in all */
     double cost;                   /* when shared, a source */
 } Pace;
+
+/* The sums of eq. 1 that one thread makes: entries of nodes, some of them perhaps twice. */
+enum { TALLY_WAYS = 1024 };
+typedef struct {
+    Pulled *pulled;
+    uint32_t n, cap;
+    uint32_t way[TALLY_WAYS]; /* to the entry of the last node that has this remainder, if it is one of the n */
+} Tally;
+
+/* The sums of four nodes under way, a lane each: sources beside each other mostly pull the same few. */
+typedef struct {
+    Four x, y;
+    EightNodes node, count; /* in two halves of a lane of x each; node NO_POINT: none */
+    FourNodes line[4];      /* node i, to compare four slots with */
+    FourNodes first, last;  /* as in Pulled */
+    uint32_t run_first, run_last; /* slots at work */
+    uint32_t next;          /* to go */
+    uint32_t live;          /* sources that pull */
+    Tally *tally;
+} Sums;
+
+typedef struct {
+    uint32_t *v, n, cap;
+    uint32_t *room, cap_room; /* to sort them in */
+} Numbers;
+
+typedef struct Lane Lane; /* turn.c: what a thread has to itself */
 
 /* Squares of the frame that veins pass through. */
 enum { PATHS_WIDEST = 12 };
@@ -172,10 +188,8 @@ struct Simulation {
     ListedSource *waiting;
     uint32_t n_waiting, next_waiting;
     /* work space of one step */
-    double *pull_x, *pull_y; /* of the bands under way */
-    gint *taken;             /* [n_groups] atomic (turn.c) */
-    gsize cap_pull;
-    uint32_t n_taken, cap_taken;
+    Lane **lane; /* [n_lanes] */
+    uint32_t n_lanes;
     Pace pace;
     bool drawn;      /* pulled[] speaks of the coming step already */
     uint32_t *fresh; /* nodes born in this step */
@@ -184,15 +198,14 @@ struct Simulation {
     bool looked;     /* where children have room was looked at before any was born */
     Boxtree fresh_tree;
     Points fresh_points; /* the same, unless there are many */
-    /* What threads write while others look at the above: apart from it, as each time it would have to be sent to them anew. */
-    char apart[64];
-    Pulled *pulled;
+    Pulled *pulled; /* by number of the node */
     uint32_t n_pulled, cap_pulled;
+    Numbers nodes; /* that are pulled */
+    Numbers late;  /* slots where something happens (turn.c) */
     uint32_t n_live; /* sources that pull */
     uint32_t n_removed;
     Arrival *arrival;
     uint32_t n_arrivals, cap_arrivals, unused_arrival;
-    gint seen; /* sources that looked at a step's nodes; atomic */
     SimulationCounts counts;
 };
 
@@ -244,7 +257,7 @@ typedef struct {
 /* sight.c */
 void fresh_prepare(Simulation *s);                         /* lists them; a tree of them, if one is needed */
 void fresh_nearest(const Simulation *s, const Field *f, Vec2 p, uint32_t *near, double *near2); /* as boxtree_nearest */
-void squares_prepare(const Simulation *s, const Group *g); /* shows them to the squares of a group */
+void square_prepare(const Simulation *s, const Unit *u, Square *q);
 
 /* The fresh nodes that a crowd looks at. */
 typedef struct {
@@ -254,15 +267,14 @@ typedef struct {
     Few rival;   /* closed: those that the nearest one need not exclude */
     double apart2[FEW][SIGHT_GUARDS]; /* squared distances of rivals from the first of the nearest */
 } Sight;
-uint32_t crowd_sole(const Simulation *s, const Crowd *c); /* the one that is nearest to all of them; NO_POINT: perhaps there are several */
-bool crowd_has_rivals(const Simulation *s, const Crowd *c, uint32_t node, Sight *room); /* closed: of the one that is nearest to all of them */
-bool crowd_sight(const Simulation *s, const Crowd *c, Sight *sight); /* FALSE when there are too many, and each source must look for itself */
+uint32_t crowd_sole(const Simulation *s, const Crowd *c, Square *q); /* the one that is nearest to all of them; NO_POINT: perhaps there are several */
+bool crowd_has_rivals(const Simulation *s, const Crowd *c, Square *q, uint32_t node, Sight *room); /* closed: of the one that is nearest to all of them */
+bool crowd_sight(const Simulation *s, const Crowd *c, Square *q, Sight *sight); /* FALSE when there are too many, and each source must look for itself */
 
-/* Where the pulls of slots go: that of slot k to x[k - first], y[k - first]. NULL: nobody asks for them. */
+/* Where the pulls of a run of slots go: that of slot k to x[k - first], y[k - first]. NULL: nobody asks for them. */
 typedef struct {
     double *x, *y;
     uint32_t first;
-    bool at_once; /* they are summed up by the same thread at once */
 } Draw;
 
 /* lone.c */
@@ -270,13 +282,10 @@ void crowd_rest(Simulation *s, Crowd *c, uint32_t node); /* they all pull one no
 void crowd_wake(Simulation *s, Crowd *c);                /* brings near[] and near2[] up to date */
 void crowds_wake(Simulation *s, uint32_t node);          /* those that pull the node; NO_POINT: all */
 bool crowd_turns(const Simulation *s, const Crowd *c, uint32_t node); /* all of a lone one turn to the node, and keep together, unless rivals part them */
-uint32_t crowd_draw_lone(const Simulation *s, Crowd *c, const Draw *draw); /* renews most2, or leaves both to pulls_sum; returns how many there are */
-/* Adds pulls of n sources towards p, one after the other, to a sum; returns the largest squared distance, or least2. */
-double lone_sum(const Vec2 *place, uint32_t n, Vec2 p, Vec2 *sum, double least2);
 
 /* look.c; what the sources of a crowd pull after it is drawn, too */
-/* Shows the fresh nodes to a crowd; returns how many sources they may concern. */
-uint32_t crowd_look(Simulation *s, Crowd *c, Sight *room, const Draw *draw);
+/* Shows the fresh nodes to a crowd; returns how many sources they may concern. q: NULL for newcomers; draw: of each run. */
+uint32_t crowd_look(Simulation *s, Crowd *c, Square *q, Sight *room, const Draw *draw);
 void source_look_open(Simulation *s, uint32_t k);   /* the same of one source */
 void source_look_closed(Simulation *s, uint32_t k);
 
@@ -286,11 +295,26 @@ double look_open_run(Simulation *s, uint32_t first, uint32_t last, const Sight *
 double look_closed_run(Simulation *s, uint32_t first, uint32_t last, const Sight *sight, const Draw *draw, bool *together, bool *parted);
 
 /* pull.c */
-void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw); /* slots first … last-1, at near[]; of length 1 */
-void pulls_sum(Simulation *s, const Band *band, bool remove, const double *x, const double *y); /* x[0], y[0]: of its first slot. Fills pulled[] */
+void sums_init(Sums *sums, Tally *tally);
+void sums_end(const Sums *sums); /* enters what is under way */
+void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw); /* slots first … last-1, at near[] */
+/* Adds what a crowd's sources pull, which are drawn already unless it is lone. With `late`, slots where something happens first (develop.c)
+ * are left out and go there. */
+void crowd_pull(Simulation *s, Crowd *c, Sums *sums, const Draw *draw, Numbers *late);
+void source_pull(Simulation *s, uint32_t k, Sums *sums); /* that of slot k, whatever it is */
+double lone_sum(const Vec2 *place, uint32_t n, Vec2 p, Vec2 *sum); /* adds the pulls of n sources on a node at p; returns the largest squared distance */
+
+/* tally.c */
+Pulled *tally_entry(Tally *t, uint32_t node);
+void tallies_join(Simulation *s, const Tally *const *tally, uint32_t n); /* fills pulled[] */
+void numbers_add(Numbers *l, uint32_t number);
+void numbers_sort(Numbers *l); /* ascending */
+void numbers_clear(Numbers *l);
 
 /* turn.c */
 void sources_turn(Simulation *s, bool look, bool remove, bool pull); /* all sources look at the new nodes, go when reached, pull */
+
+void lanes_free(Simulation *s);
 
 /* A pull at a node, found again: the next one at p->node from slot `from` on that has not been let go of since. FALSE when there is none. */
 typedef struct {
@@ -301,6 +325,7 @@ bool pulls_next(const Simulation *s, const Pulled *p, uint32_t from, Pull *pull)
 
 /* develop.c */
 uint32_t veins_develop(Simulation *s); /* grows the pulled nodes; returns how many live sources there were */
+bool source_is_late(const Simulation *s, uint32_t k);  /* it may be removed, or a vein arrive at it */
 bool source_remove_reached(Simulation *s, uint32_t k); /* returns whether it was */
 void sources_remove(Simulation *s);    /* shows the new nodes to the sources; tags, arrivals, anastomoses, removal */
 
@@ -314,6 +339,9 @@ static inline Box2 disc_box(Vec2 p, double r2)
 }
 
 enum { NEAR_APART = UINT32_MAX - 1 };
+
+/* Slots behind the last one that there is memory for, as some loops take four at a time. */
+enum { SLOTS_ASIDE = 3 };
 
 static inline bool source_is_apart(const Simulation *s, uint32_t k) { return s->source && (s->mark[k] & MARK_APART); }
 

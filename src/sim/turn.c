@@ -1,161 +1,142 @@
-/* A turn of all sources: band by band they look at the fresh nodes, each on its own and on any thread; then, in the order of the slots and by one
- * thread after the other, they go when they are reached, and pull. What one thread writes and another reads costs more than all the rest where
- * their caches are far from each other: so a thread that draws a band sums it up, too, when its turn comes, and has the same bands step by step. */
+/* A turn of all sources: they look at the fresh nodes, go when they are reached, and pull. Threads take up the crowds' units, each source looks and pulls
+ * on its own, and sums of pulls are the same in any order (pull.h); what one source does to others comes last, slot by slot and by one thread.
+ * What one thread writes and another reads costs more than all the rest where their caches are far from each other: so each has a part of the blade,
+ * the same from turn to turn but for what it takes over from one that is late. */
+#include <stdatomic.h>
 #include <string.h>
 
 #include "sim/state.h"
 
-enum { RING = 3 * CROWD_SIDE, ROOMS = RING + CROWD_SIDE, LANES_MOST = 64 };
+enum { LANES_MOST = 64, CACHE_LINES = 128 };
+
+/* What a thread has to itself. */
+struct Lane {
+    _Atomic uint64_t free; /* its units that nobody has taken, from the lower half to, not included, the upper one */
+    uint32_t taken, share; /* units it took up, its own and others; the same, when it last was not alone */
+    uint32_t seen;         /* sources that the fresh nodes may concern */
+    Tally tally;
+    Sums sums;
+    Numbers late;
+    double *x, *y; /* [cap] pulls of a crowd */
+    uint32_t cap;
+    Sight sight;
+    Square square;
+};
 
 typedef struct {
     Simulation *s;
     bool look, remove, pull;
-    uint32_t lanes; /* threads that may come */
-    uint32_t ring;  /* bands that may wait, drawn */
-    uint32_t rooms; /* a lane's, for their pulls; one where none has to wait */
-    gint settled __attribute__((aligned(64))); /* bands that no longer do; atomic */
+    uint32_t lanes; /* at work */
 } Turn;
 
-enum { NO_ROOM = UINT8_MAX };
+/* ---- units ---- */
 
-/* A thread's part. */
-typedef struct {
-    Turn *t;
-    uint32_t lane;
-    uint32_t next; /* no group of the lane's own before it is free */
-    uint32_t seen; /* sources that the fresh nodes may concern */
-    uint32_t n_waiting;
-    uint8_t waiting[RING * LANES_MOST]; /* the room of band b at b % ring, if it is drawn and not settled, else NO_ROOM */
-    uint8_t room[ROOMS];                /* those from n_waiting on are free; the last one that became so comes first, while it is in the cache */
-    Sight sight;
-} Lane;
-
-static void remove_all(Simulation *s, uint32_t first, uint32_t last)
+static bool take(Lane *l, bool from_behind, uint32_t *unit)
 {
-    for (uint32_t k = first; k < last; k++)
-        if (s->mark[k])
-            source_remove_reached(s, k);
-}
-
-static gsize room_at(const Lane *l, uint32_t room) { return ((gsize)l->lane * l->t->rooms + room) * l->t->s->crowds.longest; }
-
-static void settle(const Lane *l, uint32_t b, uint32_t room)
-{
-    Simulation *s = l->t->s;
-    const Band *band = &s->crowds.band[b];
-    if (l->t->pull)
-        pulls_sum(s, band, l->t->remove, s->pull_x + room_at(l, room), s->pull_y + room_at(l, room));
-    else
-        remove_all(s, band->first, band->last);
-}
-
-/* Settles the lane's bands whose turn it is. */
-static void settle_waiting(Lane *l)
-{
-    Turn *t = l->t;
-    while (l->n_waiting) {
-        uint32_t b = (uint32_t)g_atomic_int_get(&t->settled);
-        uint8_t *waiting = &l->waiting[b % t->ring];
-        if (*waiting == NO_ROOM)
-            return;
-        settle(l, b, *waiting);
-        l->room[--l->n_waiting] = *waiting;
-        *waiting = NO_ROOM;
-        g_atomic_int_set(&t->settled, (gint)b + 1);
+    uint64_t was = atomic_load(&l->free);
+    for (;;) {
+        uint32_t first = (uint32_t)was, last = (uint32_t)(was >> 32);
+        if (first >= last)
+            return false;
+        *unit = from_behind ? last - 1 : first;
+        if (atomic_compare_exchange_weak(&l->free, &was, from_behind ? was - ((uint64_t)1 << 32) : was + 1))
+            return true;
     }
 }
 
-static void take_band(Lane *l, uint32_t b)
+/* Where the pulls of a crowd go, run by run. */
+static void draw_to(const Lane *l, const Crowd *c, bool wanted, Draw *draw)
 {
-    Turn *t = l->t;
+    uint32_t n = 0;
+    for (uint32_t r = 0; r < CROWD_SIDE; r++) {
+        draw[r] = (Draw){wanted ? l->x + n : NULL, wanted ? l->y + n : NULL, c->first[r]};
+        n += c->last[r] - c->first[r];
+    }
+}
+
+static void list_late(const Simulation *s, const Crowd *c, Numbers *late)
+{
+    for (uint32_t r = 0; r < CROWD_SIDE; r++)
+        for (uint32_t k = c->first[r]; k < c->last[r]; k++)
+            if (source_is_late(s, k))
+                numbers_add(late, k);
+}
+
+static void take_unit(const Turn *t, Lane *l, const Unit *u)
+{
     Simulation *s = t->s;
-    const Band *band = &s->crowds.band[b];
-    uint8_t room = l->room[l->n_waiting++];
     bool wanted = t->pull && s->veins.n;
-    Draw draw = {wanted ? s->pull_x + room_at(l, room) : NULL, wanted ? s->pull_y + room_at(l, room) : NULL, band->first, false};
-    draw.at_once = wanted && (uint32_t)g_atomic_int_get(&t->settled) == b;
-    for (uint32_t c = band->first_crowd; t->look && c < band->last_crowd; c++)
-        l->seen += crowd_look(s, &s->crowds.crowd[c], &l->sight, &draw);
-    if (!t->look)
-        pulls_draw(s, band->first, band->last, &draw);
-    l->waiting[b % t->ring] = room;
-    settle_waiting(l);
-}
-
-static void take_group(Lane *l, uint32_t g)
-{
-    const Group *group = &l->t->s->crowds.group[g];
-    if (l->t->look)
-        squares_prepare(l->t->s, group);
-    for (uint32_t b = group->first_band; b < group->last_band; b++)
-        take_band(l, b);
-}
-
-/* What taken[] says of a group: whether a thread is at work at it, or has been in this turn; and whose it is (mod the number of lanes). It is its
- * taker's in the next turn, too, so that sources are mostly in the cache of the one who looks at them. */
-enum { TAKEN = 1 << 30 };
-
-static bool is_free(const Turn *t, uint32_t g) { return !(g_atomic_int_get(&t->s->taken[g]) & TAKEN); }
-
-static bool take(const Lane *l, uint32_t g)
-{
-    gint *taken = &l->t->s->taken[g], was = g_atomic_int_get(taken);
-    return !(was & TAKEN) && g_atomic_int_compare_and_exchange(taken, was, (gint)l->lane | TAKEN);
-}
-
-/* A lane's next group, or, when that is too far ahead or there is none, the last one free of those whose bands may wait. n_groups: none. With RING
- * bands waiting a lane takes no other; when all do, one of theirs is the next to be settled. */
-static uint32_t next_group(Lane *l)
-{
-    const Turn *t = l->t;
-    const Crowds *c = &t->s->crowds;
-    uint32_t end = (uint32_t)g_atomic_int_get(&t->settled) + t->ring, last = c->n_groups;
-    if (l->n_waiting >= RING)
-        return c->n_groups;
-    while (l->next < c->n_groups && (!is_free(t, l->next) || (uint32_t)g_atomic_int_get(&t->s->taken[l->next]) % t->lanes != l->lane))
-        l->next++;
-    if (l->next < c->n_groups && c->group[l->next].last_band <= end)
-        return l->next;
-    while (last-- > 0)
-        if (c->group[last].last_band <= end && is_free(t, last))
-            return last;
-    return c->n_groups;
-}
-
-static bool all_taken(const Turn *t)
-{
-    for (uint32_t g = t->s->crowds.n_groups; g-- > 0;)
-        if (is_free(t, g))
-            return false;
-    return true;
+    if (t->look && u->square)
+        square_prepare(s, u, &l->square);
+    for (uint32_t i = u->first_crowd; i < u->last_crowd; i++) {
+        Crowd *c = &s->crowds.crowd[i];
+        Draw draw[CROWD_SIDE];
+        draw_to(l, c, wanted, draw);
+        if (t->look)
+            l->seen += crowd_look(s, c, u->square ? &l->square : NULL, &l->sight, draw);
+        else
+            for (uint32_t r = 0; r < CROWD_SIDE; r++)
+                pulls_draw(s, c->first[r], c->last[r], &draw[r]);
+        if (t->pull)
+            crowd_pull(s, c, &l->sums, draw, t->remove ? &l->late : NULL);
+        else if (t->remove)
+            list_late(s, c, &l->late);
+    }
 }
 
 static void take_lane(uint32_t first, uint32_t last, void *user)
 {
-    enum { POLITENESS = 256, PATIENCE = 4096 };
-    Turn *t = user;
-    Lane l;
-    l.t = t;
-    l.lane = first;
-    l.next = l.seen = l.n_waiting = 0;
-    memset(l.waiting, NO_ROOM, t->ring);
-    for (uint8_t i = 0; i < ROOMS; i++)
-        l.room[i] = i;
-    for (uint32_t i = 1; l.n_waiting || !all_taken(t); i++) {
-        uint32_t g = next_group(&l);
-        if (g < t->s->crowds.n_groups) {
-            if (take(&l, g))
-                take_group(&l, g);
-            continue;
+    const Turn *t = user;
+    Lane *own = t->s->lane[first];
+    for (uint32_t i = 0, unit; i < t->lanes; i++) /* its own units, then those of others */
+        while (take(t->s->lane[(first + i) % t->lanes], i > 0, &unit)) {
+            take_unit(t, own, &t->s->crowds.unit[unit]);
+            own->taken++;
         }
-        settle_waiting(&l);
-        if (i % PATIENCE == 0) /* the one whose turn it is may have no processor */
-            g_usleep(50);
-        else if (i % POLITENESS == 0)
-            g_thread_yield();
-    }
-    g_atomic_int_add(&t->s->seen, (gint)l.seen); /* a sum: the order of the threads doesn't matter */
+    sums_end(&own->sums);
 }
+
+/* ---- lanes ---- */
+
+static void lane_reset(Lane *l, uint32_t longest)
+{
+    l->seen = l->taken = l->late.n = l->tally.n = 0;
+    sums_init(&l->sums, &l->tally);
+    if (l->cap >= longest)
+        return;
+    l->cap = longest + longest / 2;
+    l->x = g_renew(double, l->x, l->cap);
+    l->y = g_renew(double, l->y, l->cap);
+}
+
+static void make_lanes(Simulation *s, uint32_t lanes)
+{
+    while (s->n_lanes < lanes) {
+        s->lane = g_renew(Lane *, s->lane, s->n_lanes + 1);
+        s->lane[s->n_lanes] = g_aligned_alloc0(1, sizeof(Lane), CACHE_LINES);
+        s->lane[s->n_lanes++]->share = 1;
+    }
+}
+
+/* Each gets as large a share of the units as it took up the last time. */
+static void share_out(Simulation *s, uint32_t lanes)
+{
+    uint32_t n = s->crowds.n_units, first = 0;
+    uint64_t all = 0, sum = 0;
+    make_lanes(s, lanes);
+    for (uint32_t i = 0; i < lanes; i++)
+        all += s->lane[i]->share;
+    for (uint32_t i = 0; i < lanes; i++) {
+        Lane *l = s->lane[i];
+        sum += l->share;
+        uint32_t last = lanes > 1 && all ? (uint32_t)(sum * n / all) : n;
+        atomic_store(&l->free, (uint64_t)last << 32 | first);
+        lane_reset(l, s->crowds.longest);
+        first = last;
+    }
+}
+
+/* ---- fast enough? ---- */
 
 /* So few sources take less than some tens of microseconds, and one thread is as fast as two. */
 static bool are_few(const Simulation *s)
@@ -199,46 +180,65 @@ static void pace_note(Pace *p, gint64 time, uint32_t sources)
     p->time = p->sources = 0.0;
 }
 
-static void make_room(const Turn *t)
+/* ---- all of it ---- */
+
+/* Sources at which something happens go, or pull after all. */
+static void settle_late(Simulation *s, uint32_t lanes, bool pull)
 {
-    Simulation *s = t->s;
-    const Crowds *c = &s->crowds;
-    gsize wanted = (gsize)t->lanes * t->rooms * c->longest;
-    if (s->cap_pull < wanted) {
-        s->cap_pull = wanted + wanted / 2;
-        s->pull_x = g_renew(double, s->pull_x, s->cap_pull);
-        s->pull_y = g_renew(double, s->pull_y, s->cap_pull);
-    }
-    if (s->cap_taken < c->n_groups) {
-        s->cap_taken = 2 * c->n_groups;
-        s->taken = g_renew(gint, s->taken, s->cap_taken);
-    }
-    for (; s->n_taken < c->n_groups; s->n_taken++)
-        s->taken[s->n_taken] = (gint)s->n_taken;
-    for (uint32_t g = 0; g < c->n_groups; g++)
-        s->taken[g] &= ~TAKEN;
+    Numbers *late = &s->late;
+    Sums *sums = &s->lane[0]->sums;
+    late->n = 0;
+    for (uint32_t i = 0; i < lanes; i++)
+        for (uint32_t j = 0; j < s->lane[i]->late.n; j++)
+            numbers_add(late, s->lane[i]->late.v[j]);
+    numbers_sort(late);
+    sums_init(sums, &s->lane[0]->tally);
+    for (uint32_t i = 0; i < late->n; i++)
+        if (!source_remove_reached(s, late->v[i]) && pull)
+            source_pull(s, late->v[i], sums);
+    s->n_live += sums->live;
+    sums_end(sums);
 }
 
 void sources_turn(Simulation *s, bool look, bool remove, bool pull)
 {
-    Turn t = {.s = s, .look = look, .remove = remove, .pull = pull};
     bool many = pool_threads(s->pool) > 1 && !are_few(s);
+    Turn t = {s, look, remove, pull, !many || s->pace.kind != PACE_SHARED ? 1 : MIN(pool_threads(s->pool), LANES_MOST)};
     gint64 start = many ? g_get_monotonic_time() : 0;
-    t.lanes = !many || s->pace.kind != PACE_SHARED ? 1 : MIN(pool_threads(s->pool), LANES_MOST);
-    t.ring = RING * t.lanes;
-    t.rooms = t.lanes == 1 ? 1 : ROOMS;
     if (!look || !pull)
         crowds_wake(s, NO_POINT);
     if (look)
         fresh_prepare(s);
-    make_room(&t);
+    share_out(s, t.lanes);
+    pool_for(s->pool, t.lanes, 1, take_lane, &t);
+    s->n_live = 0;
+    for (uint32_t i = 0; i < t.lanes; i++) {
+        s->counts.updates += s->lane[i]->seen;
+        s->n_live += s->lane[i]->sums.live;
+        if (t.lanes > 1)
+            s->lane[i]->share = s->lane[i]->taken;
+    }
+    settle_late(s, t.lanes, pull);
     if (pull) {
-        s->n_pulled = s->n_live = 0;
+        const Tally *tally[LANES_MOST];
+        for (uint32_t i = 0; i < t.lanes; i++)
+            tally[i] = &s->lane[i]->tally;
+        tallies_join(s, tally, t.lanes);
         s->drawn = true;
     }
-    s->seen = 0;
-    pool_for(s->pool, t.lanes, 1, take_lane, &t);
-    s->counts.updates += (uint64_t)s->seen;
     if (many && look)
         pace_note(&s->pace, g_get_monotonic_time() - start, sources_alive(s));
+}
+
+void lanes_free(Simulation *s)
+{
+    for (uint32_t i = 0; i < s->n_lanes; i++) {
+        Lane *l = s->lane[i];
+        g_free(l->tally.pulled);
+        numbers_clear(&l->late);
+        g_free(l->x);
+        g_free(l->y);
+        g_aligned_free(l);
+    }
+    g_free(s->lane);
 }

@@ -11,13 +11,13 @@
  * with other implementations on the same points.
  * What bounds it now. Of the static workload: every source turns to a new nearest node in every step, which makes 1.3e8 turns of 10⁵ sources
  * and 4e9 of 10⁶. An open turn takes 7 to 8 ns. More than half of the sources are in crowds that all pull one node and are moved on together (lone.c);
- * of them nothing is left but the square root and the division of each pull, 14 cycles for four of them, in whose shade the sum goes on, one pull
- * after the other to keep its rounding. The others are compared with the few nodes that their crowd looks at, a fifth of the time; which these are
+ * of them nothing is left but the square root and the division of each pull, 14 cycles for four of them. (Products alone, from a guessed root on, are
+ * no faster in runs of 16 to 64.) The others are compared with the few nodes that their crowd looks at, a fifth of the time; which these are
  * takes a quarter (points.c), births a tenth. A closed turn takes 21 ns. A fifth of that is for the sources with several neighbours, which look for
  * themselves (hood_update), about 0.6 us each, most of it waiting on two trees; a quarter for the crowds near veins, where some of the nodes behind
- * the nearest one matter (block_rivals, all_excluded); a sixth to find which nodes a crowd looks at. Two threads have their own bands each
- * (turn.c), as long as that is faster than one; they hand over the sums of pulls, and what one has written the other waits for, 0.1 to 0.4 us each
- * time, as far from each other as their caches are; births and sorting are one thread's. Of a growing leaf: the first neighbourhoods of new sources
+ * the nearest one matter (block_rivals, all_excluded); a sixth to find which nodes a crowd looks at. Two threads have a part of the blade each and
+ * meet twice a turn (turn.c), 0.1 to 0.4 us for each line of memory that one has written and the other reads, as far from each other as their caches
+ * are; births, joining the sums and sorting are one thread's. Of a growing leaf: the first neighbourhoods of new sources
  * (hood_find), and room for darts and nodes (quadtree_any_within).
  * Ends with 1 when the plain twin grows another network, when threads do, or when a model takes more than 200 bytes a vein node. Times are of
  * the growth loop alone. --quick, of less than 20 seconds without a model, keeps to small cases and leaves Urquhart's neighbourhoods out. */

@@ -269,6 +269,13 @@ static bool pulls(const Plain *w, const Auxin *a, const Member *m)
     return !m->spent && !(a->reached && (!m->tagged || killed(w, a, m->node)));
 }
 
+/* So that the order of the pulls does not matter. */
+static double on_grid(double x)
+{
+    const double parts = 536870912.0; /* 2^29 */
+    return rint(x * parts) / parts;
+}
+
 /* One pull: who at which member. */
 typedef struct {
     uint32_t auxin, member, node;
@@ -310,24 +317,20 @@ static void develop(Plain *w)
         }
         w->live += any;
     }
-    bool *done = g_new0(bool, old_nodes + 1);
-    for (uint32_t k = 0; k < n; k++) { /* nodes in the order in which they are first pulled */
-        uint32_t v = tug[k].node, count = 0;
+    for (uint32_t v = 0; v < old_nodes; v++) {
+        uint32_t count = 0;
         Vec2 sum = vec2(0, 0);
-        if (done[v])
-            continue;
-        done[v] = true;
-        for (uint32_t j = k; j < n; j++)
+        for (uint32_t j = 0; j < n; j++)
             if (tug[j].node == v) {
                 Vec2 d = vec_sub(w->auxin[tug[j].auxin].p, w->pos[v]);
-                sum = vec_add(sum, vec_scale(d, 1.0 / sqrt(far2(w->auxin[tug[j].auxin].p, w->pos[v]))));
+                double scale = 1.0 / sqrt(vec_norm2(d));
+                sum = vec_add(sum, vec2(on_grid(d.x * scale), on_grid(d.y * scale)));
                 count++;
             }
         bool cancelled = vec_norm2(sum) < 1e-12 * (double)count * (double)count;
-        if (cancelled || !try_child(w, v, sum))
+        if (count && (cancelled || !try_child(w, v, sum)))
             grow_towards_one(w, tug, n, v);
     }
-    g_free(done);
     g_free(tug);
     for (uint32_t k = 0; w->n > old_nodes && k < w->n_auxin; k++)
         renew(w, &w->auxin[k], false);

@@ -6,8 +6,10 @@
 #include "../bench/plain.h"
 #include "../bench/workload.h"
 #include "geom/outline.h"
+#include "geom/random.h"
 #include "lib/leaf.h"
 #include "plain_hood.h"
+#include "sim/pull.h"
 #include "sim/state.h"
 #include "sim/width.h"
 
@@ -803,6 +805,42 @@ static void test_static(void)
     }
 }
 
+/* ---- pulls ---- */
+
+/* On a grid, four at a time as one by one, and so fine that sums are the same in any order. */
+static void test_pulls(void)
+{
+    enum { N = 4000 };
+    Vec2 *pull = g_new(Vec2, N), forth = vec2(0.0, 0.0), back = forth, exact = forth;
+    for (uint32_t i = 0; i < N; i += 4) {
+        Four dx, dy, d2, x, y;
+        for (uint32_t l = 0; l < 4; l++) {
+            double u[2];
+            random_pair(1, RANDOM_DART, 0, i + l, u);
+            Vec2 towards = vec2((u[0] - 0.4) * 300.0, (u[1] - 0.3) * 300.0);
+            double d = sqrt(vec_norm2(towards));
+            dx[l] = towards.x;
+            dy[l] = towards.y;
+            d2[l] = vec_norm2(towards);
+            pull[i + l] = pull_towards(towards);
+            g_assert_cmpfloat(fabs(pull[i + l].x - towards.x / d), <=, 0x1.001p-30);
+            g_assert_cmpfloat(fabs(pull[i + l].y - towards.y / d), <=, 0x1.001p-30);
+            g_assert_cmpfloat(pull[i + l].x * 0x1p29, ==, rint(pull[i + l].x * 0x1p29));
+            exact = vec_add(exact, vec_scale(towards, 1.0 / d));
+        }
+        four_pulls(&dx, &dy, &d2, &x, &y);
+        for (uint32_t l = 0; l < 4; l++)
+            g_assert_true(x[l] == pull[i + l].x && y[l] == pull[i + l].y);
+    }
+    for (uint32_t i = 0; i < N; i++) {
+        forth = vec_add(forth, pull[i]);
+        back = vec_add(back, pull[N - 1 - i]);
+    }
+    g_assert_true(forth.x == back.x && forth.y == back.y);
+    g_assert_cmpfloat(vec_dist(forth, exact), <, N * 0x1p-30);
+    g_free(pull);
+}
+
 /* ---- looking at new nodes, by hand ---- */
 
 /* Enters nodes as if they had just been born, and lets the sources look. */
@@ -987,6 +1025,7 @@ int main(int argc, char **argv)
     g_test_add_func("/simulation/hard/no-kill", test_no_kill);
     g_test_add_func("/simulation/hard/overshoot", test_overshoot);
     g_test_add_func("/simulation/hard/few-darts", test_few_darts);
+    g_test_add_func("/simulation/pulls", test_pulls);
     g_test_add_func("/simulation/zone-grows", test_zone_grows);
     g_test_add_func("/simulation/crowd", test_crowd);
     g_test_add_func("/simulation/static", test_static);
