@@ -114,6 +114,7 @@ VEN_API const char *ven_leaf_note(const VenLeaf *leaf);
 
 /* The network. Arrays belong to the leaf. */
 VEN_API uint32_t ven_leaf_nodes(const VenLeaf *leaf);
+VEN_API uint32_t ven_leaf_veins(const VenLeaf *leaf, uint32_t order); /* of order 1, 2 …; 0: of all */
 VEN_API uint32_t ven_leaf_edges(const VenLeaf *leaf);
 VEN_API void ven_leaf_node(const VenLeaf *leaf, uint32_t node, double *x, double *y, uint32_t *birth);
 

@@ -39,13 +39,18 @@ static gboolean set_option(Run *run, const char *option, const char *key, const 
     return !value || cli_set(run->params, option, key, value, error);
 }
 
-/* Nothing grows, unless an L-system was asked for, which draws at once. */
-static gboolean choose_origin(Run *run, GError **error)
+static gboolean by_lsystem(const Run *run)
 {
     char *origin = ven_params_get(run->params, "veins.origin");
     gboolean lsystem = g_strcmp0(origin, "lsystem") == 0;
     g_free(origin);
-    return lsystem || run_set(run, "veins.origin", "drawn", error);
+    return lsystem;
+}
+
+/* Nothing grows, unless an L-system was asked for, which draws at once. */
+static gboolean choose_origin(Run *run, GError **error)
+{
+    return by_lsystem(run) || run_set(run, "veins.origin", "drawn", error);
 }
 
 static gboolean read_params(Capture *c, GError **error)
@@ -104,13 +109,21 @@ static gboolean write_leaves(Run *run, const char *dir, gpointer user, GError **
     return ok;
 }
 
+/* What there is to do in the drawing: an L-system's veins are not in it. */
+static const char *task(const Capture *c)
+{
+    return by_lsystem(&c->run)                ? "correct the outline"
+           : ven_leaf_edges(c->run.leaf) == 0 ? "correct the outline and draw veins"
+                                              : "correct outline and veins";
+}
+
 /* Of all the files written, those that are meant for people. */
 static void say_how_to_go_on(const Capture *c)
 {
     char *dir = g_filename_display_name(c->run.dir), *first = leaf_name(c, 1), *last = leaf_name(c, c->leaves);
     gboolean several = c->leaves > 1;
-    fprintf(stderr, "%s/%s_drawing.svg%s%s%s: correct outline and veins with Inkscape, in the layers over the scan\n", dir, first, several ? " … " : "",
-            several ? last : "", several ? "_drawing.svg" : "");
+    fprintf(stderr, "%s/%s_drawing.svg%s%s%s: %s with Inkscape, in the layers over the scan\n", dir, first, several ? " … " : "",
+            several ? last : "", several ? "_drawing.svg" : "", task(c));
     fprintf(stderr, "%s/%s.ini%s%s%s: then venation grow, or shape, th%s file%s; both need %s_scan.* beside them, the rest is maps, network and record\n", dir,
             first, several ? " … " : "", several ? last : "", several ? ".ini" : "", several ? "ese" : "is", several ? "s" : "", c->run.name);
     g_free(first);
@@ -118,14 +131,29 @@ static void say_how_to_go_on(const Capture *c)
     g_free(dir);
 }
 
+/* "veins found: 5 primary, 18 secondary" */
+static char *count_veins(const Run *run)
+{
+    char *drawing = ven_params_get(run->params, "veins.drawing");
+    uint32_t primary = ven_leaf_veins(run->leaf, 1), secondary = ven_leaf_veins(run->leaf, 2), finer = ven_leaf_veins(run->leaf, 0) - primary - secondary;
+    GString *s = g_string_new(by_lsystem(run) ? "veins by the L-system: " : drawing && *drawing ? "veins drawn: " : "veins found: ");
+    g_string_append_printf(s, "%u primary, %u secondary", primary, secondary);
+    if (finer)
+        g_string_append_printf(s, ", %u finer", finer);
+    g_free(drawing);
+    return g_string_free(s, FALSE);
+}
+
 static void summarise(const Capture *c)
 {
-    guint32 edges = ven_leaf_edges(c->run.leaf);
-    char *what = c->leaves > 1 ? g_strdup_printf("%u leaves captured", c->leaves)
-                 : edges       ? g_strdup_printf("outline captured, with %u nodes of veins", ven_leaf_nodes(c->run.leaf))
-                               : g_strdup("outline captured, without veins");
+    char *veins = count_veins(&c->run), *what;
+    if (c->leaves > 1)
+        what = g_strdup_printf("%u leaves captured", c->leaves);
+    else
+        what = g_strdup_printf("outline captured, %s", ven_leaf_edges(c->run.leaf) ? veins : "without veins");
     run_summarise(&c->run, what);
     g_free(what);
+    g_free(veins);
     if (!c->run.args->quiet)
         say_how_to_go_on(c);
 }

@@ -33,6 +33,8 @@ static gboolean choose_name(Run *run)
     if (!is_name(run->name)) {
         if (run->args->name)
             cli_usage(run->verb, "--name %s: must be what file names can begin with: not empty, no '/', no '.' in front", run->name);
+        else if (g_file_test(run->path, G_FILE_TEST_IS_DIR))
+            cli_usage(run->verb, "%s: is a folder; %s takes one file at a time", run->path, run->verb->name);
         else
             cli_usage(run->verb, "%s: no name for files; give one with --name", run->name);
         return FALSE;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/run.h"
+#include "cli/wither.h"
 
 typedef struct {
     RunArgs run;
@@ -15,7 +16,7 @@ static const GOptionEntry options[] = {
     {"params", 0, 0, G_OPTION_ARG_FILENAME, FIELD(params), "Parameter file for a NETWORK or an IMAGE: colours, mesh, pose (default: the defaults)", "PARAMS"},
     {"back", 0, 0, G_OPTION_ARG_FILENAME, FIELD(back), "Scan of the shadow side, as --set scan.back", "IMAGE"},
     {"drawing", 0, 0, G_OPTION_ARG_FILENAME, FIELD(drawing), "Drawn veins instead of those found in the scan, as --set veins.drawing", "DRAWING"},
-    {"pose", 0, 0, G_OPTION_ARG_FILENAME, FIELD(pose), "Ready-made pose, as --set pose.preset",
+    {"pose", 0, 0, G_OPTION_ARG_FILENAME, FIELD(pose), "Ready-made pose, as --set pose.preset; withered colours the leaf by its age (pose.age), too, but for what --set gives or a scan shows",
      "flat|cupped|folded|drooping|curled_tip|wavy|withered"},
     {"formats", 0, 0, G_OPTION_ARG_FILENAME, FIELD(formats),
      "Models to write: all, none, or names parted by commas out of glb, obj, ply, pov, as --set export.models", "MODELS"},
@@ -39,6 +40,8 @@ static gboolean read_params(Run *run, const ShapeArgs *a, GError **error)
     for (gsize i = 0; i < G_N_ELEMENTS(given); i++)
         if (given[i].value && !cli_set(run->params, given[i].option, given[i].key, given[i].value, error))
             return FALSE;
+    if (g_strcmp0(a->pose, "withered") == 0 && !wither_colours(run, error))
+        return FALSE;
     if (!a->formats)
         return TRUE;
     char *formats = g_strdelimit(g_strdup(a->formats), ",", ' ');

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "batch/rows.h"
@@ -28,7 +29,23 @@ static uint64_t variants(const BatchDef *def)
 
 /* ---- the list ---- */
 
-static gboolean list_one(const Sweep *s, uint64_t index, int digits)
+/* Cuts a line of more than `room` characters; 0: none. */
+static void cut_line(GString *s, glong room)
+{
+    if (room <= 0 || g_utf8_strlen(s->str, -1) <= room)
+        return;
+    g_string_truncate(s, (gsize)(g_utf8_offset_to_pointer(s->str, room - 1) - s->str));
+    g_string_append(s, "…");
+}
+
+/* Columns of the terminal that the list goes to; 0: it is none, or doesn't say. */
+static glong columns(void)
+{
+    struct winsize size;
+    return isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= 20 ? size.ws_col : 0;
+}
+
+static gboolean list_one(const Sweep *s, uint64_t index, int digits, glong room)
 {
     SweepVariant v;
     sweep_variant(s, index, &v);
@@ -37,6 +54,7 @@ static gboolean list_one(const Sweep *s, uint64_t index, int digits)
     for (uint32_t k = 0; k < v.n; k++)
         if (sweep_key(s, k).varies)
             g_string_append_printf(text, " %s=%s", sweep_key(s, k).key, v.value[k] ? v.value[k] : "(parameter file's)");
+    cut_line(text, room);
     g_string_append_c(text, '\n');
     gboolean ok = cli_print(text->str) == 0;
     g_string_free(text, TRUE);
@@ -47,15 +65,16 @@ static gboolean list_one(const Sweep *s, uint64_t index, int digits)
 static gboolean list(const BatchDef *def, uint64_t most)
 {
     uint64_t mine = variants(def);
+    glong room = columns();
     int digits = 1;
     for (uint64_t n = sweep_count(def->sweep) - 1; n >= 10; n /= 10)
         digits++;
     for (uint64_t i = 0; i < MIN(mine, most); i++)
-        if (!list_one(def->sweep, def->shard + i * def->shards, digits))
+        if (!list_one(def->sweep, def->shard + i * def->shards, digits, room))
             return FALSE;
     if (mine <= most)
         return TRUE;
-    char *rest = g_strdup_printf("… and %" G_GUINT64_FORMAT " more; in a pipe or file all are listed\n", mine - most);
+    char *rest = g_strdup_printf("… and %" G_GUINT64_FORMAT " more; in a pipe or file all are listed, in full\n", mine - most);
     gboolean ok = cli_print(rest) == 0;
     g_free(rest);
     return ok;

@@ -117,7 +117,7 @@ static bool read_shape(Maker *m, GError **error)
 {
     const OutlineDef *def = m->def;
     bool traced = def->file && tracing_is(def->file);
-    if (traced    ? !tracing_read(def->file, &m->shape, error)
+    if (traced    ? !tracing_read(def->file, def->mirror, &m->shape, error)
         : def->file ? !svgfile_read(def->file, &m->shape, error)
                     : !(m->shape.path = svgpath_parse(def->path, error)))
         return false;
@@ -355,6 +355,7 @@ static bool check_simple(const Maker *m, bool toothed, GError **error)
     if (!good) {
         char *at = user_text(m, meeting_point(p->v[i], p->v[(i + 1) % p->n], p->v[j], p->v[(j + 1) % p->n]));
         fail_shape(error, toothed ? "the teeth run into each other or the blade near %s; teeth_amplitude or teeth_count must be lower"
+                   : m->def->file ? "the margin crosses or touches itself near %s (lobes that overlap become one area by Inkscape's Path > Union)"
                                   : "the margin crosses or touches itself near %s", at);
         g_free(at);
     } else if (p->area < thinnest * size * size) {

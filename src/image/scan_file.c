@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <png.h>
+#include <tiffio.h>
 
 #include "image/staged.h"
 
@@ -85,4 +86,29 @@ gboolean image_write_scan(const Scan *s, const char *path, GError **error)
     }
     g_free(w.message);
     return ok;
+}
+
+/* ---- pages ---- */
+
+static int say_nothing(TIFF *tif, void *user, const char *module, const char *format, va_list args) { return 1; }
+
+uint32_t image_pages(const char *path)
+{
+    enum { MOST = 1000 };
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (!options)
+        return 1;
+    TIFFOpenOptionsSetErrorHandlerExtR(options, say_nothing, NULL);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, say_nothing, NULL);
+    TIFF *tif = TIFFOpenExt(path, "rm", options);
+    uint32_t n = 0;
+    for (int more = tif != NULL, i = 0; more && i < MOST; more = TIFFReadDirectory(tif), i++) {
+        uint32_t kind = 0;
+        TIFFGetField(tif, TIFFTAG_SUBFILETYPE, &kind);
+        n += !(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK));
+    }
+    if (tif)
+        TIFFClose(tif);
+    TIFFOpenOptionsFree(options);
+    return n > 0 ? n : 1;
 }

@@ -46,6 +46,21 @@ uint32_t ven_scan_leaves(const VenParams *params, GError **error)
     return n;
 }
 
+uint32_t ven_leaf_veins(const VenLeaf *leaf, uint32_t order)
+{
+    const Network *net = leaf->net;
+    uint8_t *seen = g_new0(uint8_t, net->n_veins);
+    uint32_t n = 0;
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        uint8_t *vein = &seen[net->vein[e]];
+        bool counts = !*vein && (order == 0 || net->order[e] == order);
+        *vein |= counts;
+        n += counts;
+    }
+    g_free(seen);
+    return n;
+}
+
 /* ---- the scan beside the drawing ---- */
 
 /* An image that lies beside the drawing, so that the folder is complete in itself and can be moved. */

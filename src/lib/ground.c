@@ -1,5 +1,7 @@
 #include "lib/ground_private.h"
 
+#include "image/scan_file.h"
+
 /* ---- coordinates ---- */
 
 Vec2 ground_to_leaf(const Ground *g, Vec2 p)
@@ -39,6 +41,14 @@ static void check_pixels(Ground *g, const Params *p)
                                params_text(p, PARAM_SCAN_FILE), aspect, 100.0 * (MAX(aspect, 1.0 / aspect) - 1.0), aspect > 1.0 ? "narrow" : "wide");
 }
 
+/* Of a file of several scans one is read. */
+static void check_pages(Ground *g, const Params *p, ParamId id)
+{
+    uint32_t n = *params_text(p, id) ? image_pages(params_text(p, id)) : 1;
+    if (n > 1)
+        g_string_append_printf(g->note, "%s: has %u pages; the first is read. Save the others as files of their own to have them captured\n", params_text(p, id), n);
+}
+
 /* What parts the image best need not be the leaf's margin. */
 static void check_channel(Ground *g, const Params *p)
 {
@@ -76,6 +86,8 @@ static gboolean find(Ground *g, const Params *p, GroundScan *sheet, bool veins, 
     if (ok && g->scan) {
         g->to_scan = ground_to_pixels(g->base, g->tip, g->scan->height);
         check_pixels(g, p);
+        check_pages(g, p, PARAM_SCAN_FILE);
+        check_pages(g, p, PARAM_SCAN_BACK);
         check_channel(g, p);
     }
     ok = ok && (!g->back || ground_find_back(g, p, back, error));

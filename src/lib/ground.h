@@ -24,6 +24,7 @@ typedef struct {
     double back_off;         /* mean distance of the outlines of both sides, leaf lengths; 0 without a back */
     FangProfile *fang;       /* by edges */
     char *outline_lies, *drawing_lies; /* how the drawn outline and veins came to lie on it, in words (geom/svgplace.h); or NULL */
+    const char *lsystem;     /* the preset by which an L-system drew the veins last, "pinnate" or "palmate"; NULL: none did, or one of its own rules */
     GString *note;           /* what a person should know of it, a line each */
     double cut_off;          /* part of the outline that runs along the edge of the image, where the leaf goes on */
 } Ground;
@@ -45,5 +46,9 @@ Ground *ground_ref(Ground *g);
 /* Veins by [lsystem] in the outline, of `length` segments; what a person should know of them is noted. */
 Network *ground_lsystem(Ground *g, const Params *p, double length, uint64_t seed, GError **error);
 void ground_unref(Ground *g);
+
+/* Colours of blade and larger veins, linear light, as drawings show them: the scan's, where it has the leaf's colours and [texture] gives none; veins
+ * stand out at least as much as lines must. Else they stay. `g` may be NULL. */
+void ground_colours(const Ground *g, const Params *p, float lamina[3], float vein[3]);
 
 #endif

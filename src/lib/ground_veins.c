@@ -125,14 +125,15 @@ static bool draw_other(const Ground *g, const Params *p, bool palmate, uint64_t 
     return better;
 }
 
+static const char *const preset_name[] = {"pinnate", "palmate"};
+
 static void note_bare(Ground *g, const Params *p, double bare, Vec2 at, bool palmate)
 {
-    static const char *const name[] = {"pinnate", "palmate"};
     bool chosen = params_choice(p, PARAM_LSYSTEM_PRESET) == PRESET_AUTO;
     char *note = g_strdup_printf("the L-system's veins (lsystem.preset %s%s) leave a disc of %.0f %% of the blade's width bare, around %.2f, %.2f in leaf "
                                  "lengths from the base; %s%s, lsystem.axiom and lsystem.productions, or veins.origin = grown fill it\n",
-                                 name[palmate], chosen ? ", by itself" : "", 100.0 * bare, at.x, at.y,
-                                 chosen ? "more lsystem.margin_veins" : "lsystem.preset = ", chosen ? "" : name[!palmate]);
+                                 preset_name[palmate], chosen ? ", by itself" : "", 100.0 * bare, at.x, at.y,
+                                 chosen ? "more lsystem.margin_veins" : "lsystem.preset = ", chosen ? "" : preset_name[!palmate]);
     if (!strstr(g->note->str, note)) /* the frames of a run share their ground */
         g_string_append(g->note, note);
     g_free(note);
@@ -150,6 +151,7 @@ Network *ground_lsystem(Ground *g, const Params *p, double length, uint64_t seed
     double bare = bare_disc(net, &centre);
     if (bare > much_bare && preset == PRESET_AUTO && draw_other(g, p, !palmate, seed, &net, &bare, &centre))
         palmate = !palmate;
+    g->lsystem = preset_name[palmate];
     if (bare > most_bare && bare * (net->margin->box.x1 - net->margin->box.x0) > least_bare * length)
         note_bare(g, p, bare, vec_scale(centre, 1.0 / length), palmate);
     return net;

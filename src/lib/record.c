@@ -212,6 +212,8 @@ static GString *begin_record(const VenLeaf *leaf)
     parameters(s, leaf->params);
     if (leaf->ground && leaf->ground->scan)
         scan_facts(s, leaf->ground);
+    if (leaf->ground && leaf->ground->lsystem) /* what lsystem.preset auto came to */
+        g_string_append_printf(s, "  \"lsystem\": {\n    \"preset\": \"%s\"\n  },\n", leaf->ground->lsystem);
     g_string_append(s, "  \"leaf\": {\n");
     number(s, "length", leaf->length, ",\n");
     number(s, "width", net->margin->box.x1 - net->margin->box.x0, ",\n");

@@ -160,6 +160,7 @@ static gboolean write_svg(const Writer *w, const Frame *frame, GError **error)
 {
     PaintStyle style = settings_style(w->leaf->params, w->leaf->seed, w->leaf->threads);
     const char *title = params_text(w->leaf->params, PARAM_LEAF_TITLE);
+    ground_colours(w->leaf->ground, w->leaf->params, style.lamina, style.vein);
     char *path = writer_path(w, ".svg");
     gboolean ok = export_svg(w->leaf->net, frame, &style, *title ? title : w->name, path, error);
     g_free(path);
