@@ -84,6 +84,26 @@ static double along_edge(const Polygon *p, const Scan *scan)
     return edge / whole;
 }
 
+/* What was taken for the leaf otherwise than by separability and frame, and what to set where that is wrong. */
+static void note_sides(Ground *g, const Params *p, const Threshold *t)
+{
+    const char *file = params_text(p, PARAM_SCAN_FILE), *other = t->dark ? "light" : "dark";
+    if (t->sheet.n > 0) {
+        Box2 b = box_empty();
+        for (uint32_t i = 0; i < t->sheet.n; i++)
+            b = box_add(b, t->sheet.corner[i]);
+        g_string_append_printf(g->note, "%s: the leaf was looked for on a sheet of paper that spans x %.0f … %.0f, y %.0f … %.0f (pixels from the upper left corner); "
+                               "with scan.side = dark or light all of the image counts\n", file, MAX(b.x0, 0.0), MIN(b.x1, g->scan->width), MAX(b.y0, 0.0),
+                               MIN(b.y1, g->scan->height));
+    }
+    if (t->turned)
+        g_string_append_printf(g->note, "%s: what most of the image's frame shows is taken for leaf, as by its colours the rest is its background; if it isn't, set "
+                               "scan.side = %s\n", file, other);
+    if (t->pale)
+        g_string_append_printf(g->note, "%s: what is taken for leaf is pale and grey, and what is around it is greener; if that is a leaf that fills the image, set "
+                               "scan.side = %s\n", file, other);
+}
+
 /* ---- drawn ---- */
 
 static Polygon *drawn_outline(Ground *g, const Params *p, GError **error)
@@ -103,6 +123,7 @@ gboolean ground_find_outline(Ground *g, const Params *p, GroundScan *sheet, GErr
     if (g->scan && !given) {
         if (!(params_choice(p, PARAM_SCAN_METHOD) == 0 ? find_profile(g, p, sheet, error) : find_fang(g, p, error)))
             return FALSE;
+        note_sides(g, p, g->profile ? &g->threshold : &g->fang->threshold);
         g->cut_off = along_edge(g->profile ? g->profile->outline : g->fang->outline, g->scan);
         return TRUE;
     }

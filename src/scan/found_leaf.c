@@ -5,6 +5,7 @@
 #include "scan/convolve.h"
 #include "scan/found_parts.h"
 #include "scan/mask.h"
+#include "scan/openings.h"
 
 static const double shortest_side = 800.0; /* the same, of small leaves, as far as pixels of half the size allow: the filter's least width is two */
 static const double least_step = 0.5;
@@ -142,9 +143,9 @@ static void take_out_holes(FoundLeaf *l, const Vec2 *base)
 }
 
 /* A petiole over the blade hides it, and so does its shadow. */
-static void take_out_stalk(FoundLeaf *l, const Polygon *outline, Vec2 base)
+static void take_out_stalk(FoundLeaf *l, const Polygon *outline, const Threshold *t, Vec2 base)
 {
-    l->over = stalk_over_find(l->scan, outline, NULL, base);
+    l->over = stalk_over_find(l->scan, outline, t, base);
     for (uint32_t y = 0; l->over && y < l->height; y++)
         for (uint32_t x = 0; x < l->width; x++) {
             gsize i = (gsize)y * l->width + x;
@@ -185,8 +186,12 @@ static void mark_blade(FoundLeaf *l, const Polygon *outline, const Vec2 *base)
             l->inside[(gsize)y * l->width + x] = seen && polygon_contains(outline, vec2(sx, l->scan->height - sy));
         }
     take_out_holes(l, base);
-    if (base)
-        take_out_stalk(l, outline, *base);
+    Threshold t;
+    bool parted = openings_threshold(l->scan, outline, &(ThresholdDef){CHANNEL_BEST, LEAF_BY_FRAME, -1.0}, &t);
+    if (parted)
+        found_open_holes(l, &t, base, thick_radius * l->length * l->step);
+    if (parted && base)
+        take_out_stalk(l, outline, &t, *base);
     erode(l, l->inside, MAX(border * l->length, 2.0), l->deep);
     add_rims(l, MAX(border * l->length, 2.0));
 }

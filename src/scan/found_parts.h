@@ -27,6 +27,9 @@ enum { FOUND_SIDE = 1200 }; /* working pixels */
 bool found_leaf_init(FoundLeaf *l, const Scan *s, const Polygon *outline, const Vec2 *base, double longest, GError **error);
 void found_leaf_clear(FoundLeaf *l);
 
+/* Marks holes by the threshold, besides those known, but none so near to the base, pixels of the scan, where veins are thick and pale. */
+void found_open_holes(FoundLeaf *l, const Threshold *t, const Vec2 *base, double thick);
+
 /* One pass of the filter over an image at one width. */
 typedef struct {
     GreyImage *best;     /* contrast of the best direction, 0 where negative */

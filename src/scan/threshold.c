@@ -1,4 +1,4 @@
-#include "scan/threshold.h"
+#include "scan/threshold_sheet.h"
 
 #include <string.h>
 
@@ -138,25 +138,46 @@ typedef struct {
     uint32_t *count[CHANNEL_COUNT], *odd[CHANNEL_COUNT], *frame[CHANNEL_COUNT]; /* NULL: not wanted */
 } Histograms;
 
-static void count_row(Histograms *h, Channel c, const Row *row, bool edge)
+/* Columns from … to - 1 of a row; those up to left - 1 and from right on are of the frame. */
+typedef struct {
+    uint32_t from, to, left, right;
+} Span;
+
+static void count_row(Histograms *h, Channel c, const Row *row, const Span *span)
 {
-    uint32_t *count = h->count[c], *odd = h->odd[c], *frame = h->frame[c], x = 0;
-    for (; x + 1 < row->width; x += 2) {
+    uint32_t *count = h->count[c], *odd = h->odd[c], *frame = h->frame[c], x = span->from;
+    for (; x + 1 < span->to; x += 2) {
         count[row->value[x]]++;
         odd[row->value[x + 1]]++;
     }
-    if (x < row->width)
+    if (x < span->to)
         count[row->value[x]]++;
-    for (x = 0; edge && x < row->width; x++)
+    for (x = span->from; x < span->left; x++)
         frame[row->value[x]]++;
-    if (!edge) {
-        frame[row->value[0]]++;
-        if (row->width > 1)
-            frame[row->value[row->width - 1]]++;
-    }
+    for (x = span->right; x < span->to; x++)
+        frame[row->value[x]]++;
 }
 
-static void histograms_init(Histograms *h, const Scan *s, Channel wanted)
+/* Of the sheet, or of all of the image; false where it has nothing of a row. The frame is what has a neighbour beyond. */
+static bool span_of(const Scan *s, const Paper *sheet, uint32_t y, Span *out)
+{
+    *out = (Span){0, s->width, 0, 0};
+    if (sheet->n > 0 && !paper_span(sheet, s->width, y, &out->from, &out->to))
+        return false;
+    uint32_t most = out->from + 1, least = out->to - 1;
+    for (uint32_t k = 0; k < 2; k++) {
+        uint32_t from = out->from, to = out->to;
+        if ((k ? y + 1 == s->height : y == 0) || (sheet->n > 0 && !paper_span(sheet, s->width, k ? y + 1 : y - 1, &from, &to)))
+            from = to = out->to;
+        most = MAX(most, MIN(from, out->to));
+        least = MIN(least, MAX(to, out->from));
+    }
+    out->left = most;
+    out->right = MAX(least, most);
+    return true;
+}
+
+static void histograms_init(Histograms *h, const Scan *s, Channel wanted, const Paper *sheet)
 {
     *h = (Histograms){.bins = s->depth == 8 ? 256 : 65536};
     Row row;
@@ -169,12 +190,15 @@ static void histograms_init(Histograms *h, const Scan *s, Channel wanted)
         h->frame[c] = g_new0(uint32_t, h->bins);
     }
     for (uint32_t y = 0; y < s->height; y++) {
+        Span span;
+        if (!span_of(s, sheet, y, &span))
+            continue;
         row_load(&row, s, y);
         for (Channel c = CHANNEL_RED; c < CHANNEL_COUNT; c++) {
             if (!h->count[c])
                 continue;
             row_channel(&row, c);
-            count_row(h, c, &row, y == 0 || y + 1 == s->height);
+            count_row(h, c, &row, &span);
         }
     }
     for (Channel c = CHANNEL_RED; c < CHANNEL_COUNT; c++)
@@ -306,12 +330,10 @@ static bool check(const Scan *s, const ThresholdDef *def, GError **error)
     return true;
 }
 
-bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GError **error)
+void threshold_find_on(const Scan *s, const ThresholdDef *def, const Paper *sheet, Threshold *out)
 {
-    if (!check(s, def, error))
-        return false;
     Histograms h;
-    histograms_init(&h, s, def->channel);
+    histograms_init(&h, s, def->channel, sheet);
     double best = -1.0;
     for (Channel c = CHANNEL_RED; c < CHANNEL_COUNT; c++) {
         if (!h.count[c] || (c == CHANNEL_GREENNESS && def->channel == CHANNEL_BEST))
@@ -325,13 +347,24 @@ bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GErr
     }
     set_side(&h, def->side, out);
     ask_greenness(&h, def, out);
+    out->sheet = *sheet;
     histograms_clear(&h);
+}
+
+bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GError **error)
+{
+    static const Paper whole = {0};
+    if (!check(s, def, error))
+        return false;
+    threshold_find_on(s, def, &whole, out);
     if (def->level < 0.0 && !(out->contrast >= LEAST_CONTRAST)) {
         g_set_error(error, SCAN_ERROR, SCAN_ERROR_NO_LEAF,
                     "no leaf: the image is all of one shade (parted by %s as well as it goes, its darker and lighter pixels differ by %.2g %% of the scale; at least %g %% are needed)",
                     channel_name(out->channel), 100.0 * out->contrast, 100.0 * LEAST_CONTRAST);
         return false;
     }
+    if (def->level < 0.0 && def->side == LEAF_BY_FRAME && !(def->channel == CHANNEL_BEST && threshold_look_for_sheet(s, def, out)))
+        threshold_look_at_sides(s, out);
     return true;
 }
 
@@ -341,9 +374,15 @@ void threshold_apply(const Scan *s, const Threshold *t, uint8_t *mask)
     row_init(&row, s);
     for (uint32_t y = 0; y < s->height; y++) {
         uint8_t *out = mask + (gsize)y * s->width;
+        uint32_t from = 0, to = s->width;
+        if (t->sheet.n > 0) {
+            memset(out, 0, s->width);
+            if (!paper_span(&t->sheet, s->width, y, &from, &to))
+                continue;
+        }
         row_load(&row, s, y);
         row_channel(&row, t->channel);
-        for (uint32_t x = 0; x < s->width; x++)
+        for (uint32_t x = from; x < to; x++)
             out[x] = ((double)row.value[x] < t->level) == t->dark;
     }
     row_clear(&row);

@@ -2,6 +2,7 @@
 #ifndef SCAN_THRESHOLD_H
 #define SCAN_THRESHOLD_H
 
+#include "scan/paper.h"
 #include "scan/scan.h"
 
 /* Where a pixel is partly transparent, colours are taken as seen on white. */
@@ -20,7 +21,7 @@ typedef enum {
 } Channel;
 
 typedef enum {
-    LEAF_BY_FRAME, /* the leaf is on the side that fewer pixels along the image's frame are on; of equals the darker */
+    LEAF_BY_FRAME, /* the leaf is on the side that fewer pixels along the image's frame are on, of equals the darker; but what is paper by its colours isn't leaf (turned) */
     LEAF_DARK,     /* below the threshold */
     LEAF_LIGHT,    /* not below it */
 } LeafSide;
@@ -38,15 +39,18 @@ typedef struct {
     double separability; /* variance between the two classes / total variance (Otsu 1979, η): 0 … 1 */
     double contrast;     /* between the classes' means, share of the whole scale */
     double frame;        /* share of the frame's pixels that are background */
-    double leaf;         /* share of all pixels that are leaf */
+    double leaf;         /* share of all pixels that are leaf; of those on the sheet if there is one */
     double green;        /* the same by greenness where that parts nearly as well as the best channel and says otherwise (paper on a dark ground); else 0 */
+    Paper sheet;         /* that the leaf lies on and the frame is of, on another ground; beyond it nothing is leaf. Only where all is left to be found */
+    bool turned;         /* the frame shows more leaf than paper, as a leaf that fills the image has it, and the sides were changed */
+    bool pale;           /* what is leaf is pale and grey, what is not green: a white leaf, or holes and gaps in a leaf that fills the image */
 } Threshold;
 
 /* False with SCAN_ERROR_NO_LEAF when the image is all of one shade (contrast below 2 %), with SCAN_ERROR_VALUE for a channel that the image
  * lacks or a level beyond 255. */
 bool threshold_find(const Scan *s, const ThresholdDef *def, Threshold *out, GError **error);
 
-/* Sets mask[height][width] to 1 for leaf and 0 for background. */
+/* Sets mask[height][width] to 1 for leaf on the sheet, if there is one, and 0 for all else. */
 void threshold_apply(const Scan *s, const Threshold *t, uint8_t *mask);
 
 /* A pixel's value in a channel other than CHANNEL_BEST. */

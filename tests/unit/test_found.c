@@ -420,6 +420,57 @@ static void test_eaten(void)
     check_eaten(true, 40, -35, 6.0);
 }
 
+/* How much of the veins lies in two ellipses, 58 × 20 pixels in half. */
+static double length_in_holes(const Drawing *d, const Vec2 hole[2])
+{
+    double in = 0.0;
+    for (uint32_t v = 0; v < d->n; v++)
+        for (uint32_t i = 1; i < d->vein[v].n; i++)
+            for (int k = 0; k < 2; k++) {
+                Vec2 a = d->vein[v].point[i - 1], b = d->vein[v].point[i], q = vec_lerp(a, b, 0.5);
+                double x = (q.x - hole[k].x) / 58.0, y = (q.y - hole[k].y) / 20.0;
+                in += x * x + y * y < 1.0 ? vec_dist(a, b) : 0.0;
+            }
+    return in;
+}
+
+/* Where the ground lies in the leaf's shadow, around it and in holes, its lighter parts and their edges are no veins. */
+static void test_shadow(void)
+{
+    const Vec2 hole[2] = {{400, 440}, {700, 255}};
+    Polygon *outline = ellipse();
+    Drawing *truth = pinnate();
+    double *cover = covered(truth, 0.3);
+    Scan *s = painted(outline, cover, 3, 35, 6.0);
+    for (int i = 0; i < W * H; i++) {
+        Vec2 q = vec2(i % W + 0.5, H - i / W - 0.5);
+        double far = vec_dist(polygon_nearest(outline, q, NULL), q), level = far > 0.0 ? 60.0 + MIN(2.5 * far, 160.0) : 0.0;
+        bool ground = !polygon_contains(outline, q);
+        for (int k = 0; k < 2; k++) {
+            double x = (q.x - hole[k].x) / 60.0, y = (q.y - hole[k].y) / 22.0;
+            if (x * x + y * y >= 1.0)
+                continue;
+            ground = true;
+            level = y > 0.0 ? 60.0 : 60.0 + 140.0 * fabs(y); /* lightest along its lower side */
+        }
+        for (uint32_t c = 0; ground && c < 3; c++)
+            ((uint8_t *)s->px)[3 * i + (int)c] = (uint8_t)CLAMP(level + 4.0 * triangular(50 + c, (uint64_t)i), 0.0, 255.0);
+    }
+    FoundDef def = found_def_default();
+    Drawing *d = found(s, outline, &def);
+    double in = length_in_holes(d, hole), least = length_in_holes(truth, hole); /* secondaries that the holes hide go straight on over them */
+    FoundScore score = found_score(d, truth, 0.006 * 900);
+    g_test_message("%.1f pixels of veins in holes, %.1f of them hidden there; precision %.3f, recall %.3f", in, least, score.precision, score.recall);
+    g_assert_cmpfloat(in, <=, 1.1 * least + 5.0);
+    g_assert_cmpfloat(score.precision, >, 0.9);
+    g_assert_cmpfloat(score.recall, >, 0.85);
+    drawing_free(d);
+    drawing_free(truth);
+    scan_free(s);
+    g_free(cover);
+    polygon_free(outline);
+}
+
 /* Lines side by side: along a strip, or from end to end of a lance, where some leave the middle one late. Each is found whole, by its order. */
 static void check_parallel(uint32_t k, double contrast, double noise)
 {
@@ -914,6 +965,7 @@ int main(int argc, char **argv)
     g_test_add_func("/found/petiole", test_petiole);
     g_test_add_func("/found/under", test_under);
     g_test_add_func("/found/eaten", test_eaten);
+    g_test_add_func("/found/shadow", test_shadow);
     g_test_add_func("/found/parallel", test_parallel);
     g_test_add_func("/found/comb", test_comb);
     g_test_add_func("/found/blank", test_blank);

@@ -849,13 +849,13 @@ static void test_saturation(void)
     scan_free(s);
 }
 
-/* A green disc, on paper where `paper`, on a ground of one more colour. */
-static Scan *green_disc(bool paper, const uint8_t ground[3], uint32_t unrest)
+/* A green disc, on a round plate where `plate`, on a ground of one more colour. */
+static Scan *green_disc(bool plate, const uint8_t ground[3], uint32_t unrest)
 {
     Scan *s = scan_new(120, 120, 3, 8);
     for (uint32_t i = 0; i < 120 * 120; i++) {
         double x = i % 120 - 59.5, y = i / 120 - 59.5;
-        bool leaf = x * x + y * y < 30.0 * 30.0, sheet = paper && fabs(x) < 50.0 && fabs(y) < 50.0;
+        bool leaf = x * x + y * y < 30.0 * 30.0, sheet = plate && x * x + y * y < 56.0 * 56.0;
         const uint8_t green[2][3] = {{60, 95, 45}, {120, 150, 100}}, white[3] = {245, 245, 240};
         const uint8_t *colour = leaf ? green[x > 0.0] : sheet ? white : ground;
         double off = leaf || sheet ? 0.0 : noise(97, i, unrest);
@@ -865,7 +865,7 @@ static Scan *green_disc(bool paper, const uint8_t ground[3], uint32_t unrest)
     return s;
 }
 
-/* Otsu's separability alone takes the paper on a dark ground, and of a leaf on wood the darker half. */
+/* Otsu's separability alone takes what the leaf lies on for it on a dark ground, unless that is a sheet (test_threshold.c), and of a leaf on wood the darker half. */
 static void test_greenness(void)
 {
     const double disc = 30.0 * 30.0 * G_PI / (120.0 * 120.0);
