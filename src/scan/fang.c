@@ -8,6 +8,7 @@
 #include "scan/fang_region.h"
 #include "scan/fang_rough.h"
 #include "scan/profile.h"
+#include "scan/sharp.h"
 
 #define MARGIN 8.0 /* around the leaf's box, pixels, besides the reach of smoothing */
 #define GROUND 64.0 /* around it, pixels: enough to tell what the ground's noise is */
@@ -109,6 +110,32 @@ static bool find_border(const Scan *s, const Mask *m, const FangDef *def, FangPr
     return true;
 }
 
+/* Marks what lies within the border, and what is leaf beyond it: the petiole. */
+static void mark_border(const Scan *s, const Mask *m, const Polygon *border)
+{
+    MaskBox b = around(s, border->box, GROUND);
+    for (uint32_t y = b.y0; y <= b.y1; y++)
+        for (uint32_t x = b.x0; x <= b.x1; x++) {
+            uint8_t *px = mask_at(m, x, y);
+            bool in = polygon_contains(border, vec2(x + 0.5, s->height - (y + 0.5)));
+            *px = (uint8_t)((*px & MASK_LEAF) | (in ? MASK_THIS : *px & MASK_LEAF ? MASK_STALK : 0));
+        }
+}
+
+/* The contour's tips go on as those of any outline. */
+static void sharpen(const Scan *s, const Mask *m, FangProfile *out)
+{
+    uint32_t *at = g_new(uint32_t, out->contour->n);
+    mark_border(s, m, out->border);
+    Polygon *sharp = sharp_ends(out->contour, s, &out->threshold, m, MASK_STALK, at);
+    if (sharp) {
+        out->tip = at[out->tip];
+        polygon_free(out->contour);
+        out->contour = sharp;
+    }
+    g_free(at);
+}
+
 static void find_contour(const Scan *s, FangProfile *out)
 {
     EdgesOperator op = fang_broad(out->used.op);
@@ -185,6 +212,8 @@ static bool capture(const Scan *s, const Mask *m, const FangDef *def, FangProfil
     if (!fang_rough(s, &out->threshold, def, m, &leaf, error) || !find_region(s, m, leaf, out, error) || !find_border(s, m, def, out, error))
         return false;
     find_contour(s, out);
+    if (!(def->open > 0.0))
+        sharpen(s, m, out);
     return find_corners(s, def, out, error) && find_fit(def, out, error);
 }
 

@@ -34,7 +34,7 @@ typedef struct {
     EdgesDef used;      /* sigma and thresholds that were used */
     FangMatch region;     /* how well edges and rough region agree */
     Polygon *border;    /* of the leaf by its edges, y-up pixels, counter-clockwise */
-    Polygon *contour;   /* the same, each vertex moved to where the edge is strongest; vertex 0 is the base, or the petiole's end when it is kept */
+    Polygon *contour;   /* the same, each vertex moved to where the edge is strongest, drawn-out tips gone on with (scan/sharp.h); vertex 0 is the base, or the petiole's end when it is kept */
     uint32_t base, tip; /* vertices of the contour */
     GArray *corners;    /* Corner: the characteristic points, along the contour */
     BezierFit *fit;

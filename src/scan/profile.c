@@ -7,6 +7,7 @@
 #include "scan/axis.h"
 #include "scan/gather.h"
 #include "scan/mask.h"
+#include "scan/sharp.h"
 #include "scan/stalk.h"
 #include "scan/stalk_over.h"
 
@@ -121,6 +122,11 @@ static Polygon *trace(Capture *c, bool stalk)
     Polygon *p = NULL;
     if (k < l->n) {
         p = polygon_new(l->p + l->start[k], l->start[k + 1] - l->start[k]);
+        Polygon *whole = f.level && c->def->square == 1 && !(c->def->open > 0.0) ? sharp_ends(p, c->scan, c->threshold, c->mask, stalk ? 0 : MASK_STALK, NULL) : NULL;
+        if (whole) {
+            polygon_free(p);
+            p = whole;
+        }
         if (stalk == c->def->keep_stalk)
             measure(c, p);
     }
@@ -305,13 +311,12 @@ static void mend_base(const Capture *c, const Mask *w, const Stalk *s)
     mask_clear(&m, MASK_WORK);
 }
 
-/* A petiole that is bent over the blade, which was traced with a slit where it is as pale as the ground: true when that is mended. Masks that were made otherwise
- * keep the shape they have. */
+/* A petiole that is bent over the blade, which was traced with a slit where it is as pale as the ground: true when that is mended. */
 static bool uncover(Capture *c, const Mask *w, const Polygon *blade)
 {
     Profile *o = c->out;
     bool as_usual = o->has_stalk && o->base_from == BASE_STALK;
-    StalkOver *over = as_usual || c->def->keep_stalk || !c->threshold ? NULL : stalk_over_find(c->scan, blade, c->threshold, o->base);
+    StalkOver *over = as_usual || c->def->keep_stalk ? NULL : stalk_over_find(c->scan, blade, c->threshold, o->base);
     if (!over)
         return false;
     stalk_over_mend(over, w, upright(c, vec2(0.0, 0.0)));

@@ -50,7 +50,7 @@ typedef struct {
 GPtrArray *profile_capture(const Scan *s, const ProfileDef *def, Threshold *used, GError **error);
 
 /* The same where the leaf's pixels are marked already, by MASK_LEAF and no other bit in a mask of the scan's size, which is changed. The
- * threshold and `subpixel` are not used. */
+ * threshold and `subpixel` are not used, but for a petiole over the blade one is looked for. */
 GPtrArray *profile_capture_mask(const Scan *s, const Mask *m, const ProfileDef *def, GError **error);
 void profile_free(Profile *p);
 

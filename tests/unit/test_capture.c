@@ -116,27 +116,26 @@ static Polygon *in_pixels(const Vec2 *v, uint32_t n, Vec2 (*place)(Vec2 p, gcons
 static Vec2 of_picture(Vec2 p, gconstpointer user) { return to_pixel(user, p); }
 static Vec2 of_ground(Vec2 p, gconstpointer user) { return affine_apply(&((const Ground *)user)->to_scan, p); }
 
-/* How far vertices of one outline lie from the other, pixels; those within `but` of a point are left out. */
-static double farthest(const Polygon *from, const Polygon *to, Vec2 tip, double but)
+/* How far vertices of one outline lie from the other, pixels. */
+static double farthest(const Polygon *from, const Polygon *to)
 {
     double far = 0.0;
     for (uint32_t i = 0; i < from->n; i++)
-        if (vec_dist(from->v[i], tip) >= but)
-            far = MAX(far, fabs(polygon_depth(to, from->v[i])));
+        far = MAX(far, fabs(polygon_depth(to, from->v[i])));
     return far;
 }
 
-/* Within a pixel both ways; but of the pointed tip, where the leaf is less than half a pixel wide, some two pixels fade. */
+/* Within a pixel both ways, the pointed tip included. */
 static void check_outline(const Picture *pic, const Ground *g, const char *method)
 {
     const Polygon *margin = pic->leaf->net->margin;
     Polygon *truth = in_pixels(margin->v, margin->n, of_picture, pic), *found = in_pixels(g->outline->v, g->outline->n, of_ground, g);
     Vec2 tip = to_pixel(pic, vec2(0, pic->leaf->length));
-    double there = farthest(found, truth, tip, 0.0), back = farthest(truth, found, tip, 0.5), lost = fabs(polygon_depth(found, tip));
-    g_test_message("%s: outline within %.2f, margin within %.2f of it, tip shorter by %.2f pixels", method, there, back, lost);
+    double there = farthest(found, truth), back = farthest(truth, found), lost = fabs(polygon_depth(found, tip));
+    g_test_message("%s: outline within %.2f, margin within %.2f of it, tip within %.2f pixels", method, there, back, lost);
     g_assert_cmpfloat(there, <, 1.0);
     g_assert_cmpfloat(back, <, 1.0);
-    g_assert_cmpfloat(lost, <, 2.6);
+    g_assert_cmpfloat(lost, <, 0.5);
     polygon_free(truth);
     polygon_free(found);
 }
@@ -256,8 +255,8 @@ static void test_traced(void)
     Ground *g = ground_new(p->values, false, &error);
     g_assert_no_error(error);
     Polygon *found = in_pixels(g->outline->v, g->outline->n, of_ground, g);
-    g_assert_cmpfloat(farthest(found, truth, vec2(0, 0), 0.0), <, 0.01);
-    g_assert_cmpfloat(farthest(truth, found, vec2(0, 0), 0.0), <, 0.01);
+    g_assert_cmpfloat(farthest(found, truth), <, 0.01);
+    g_assert_cmpfloat(farthest(truth, found), <, 0.01);
     g_assert_cmpfloat(vec_dist(affine_apply(&g->to_scan, vec2(0, 1)), to_pixel(&pic, vec2(0, pic.leaf->length))), <, 0.01);
     polygon_free(truth);
     polygon_free(found);
