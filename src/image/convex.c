@@ -18,6 +18,7 @@ void union_clear(Union *u)
     for (int i = 0; i < 4; i++)
         rings_clear(&u->scratch[i]);
     rings_clear(&u->mask);
+    g_free(u->place);
     g_free(u->rank);
     g_free(u->size);
 }
@@ -25,6 +26,19 @@ void union_clear(Union *u)
 void union_reset(Union *u)
 {
     rings_reset(&u->part);
+}
+
+void union_put(Union *u, uint32_t place)
+{
+    uint32_t i = u->part.n;
+    rings_copy(&u->part, u->ping->v, u->ping->n_v);
+    if (i == u->part.n)
+        return;
+    if (i == u->cap_place) {
+        u->cap_place = MAX(2 * u->cap_place, 16u);
+        u->place = g_renew(uint32_t, u->place, u->cap_place);
+    }
+    u->place[i] = place;
 }
 
 static void take_turns(Union *u)
@@ -133,13 +147,21 @@ static void rank_parts(Union *u, uint32_t first, uint32_t last)
     }
 }
 
+/* Do two parts overlap? Neighbours along a vein don't; others may all the same not where it says they do. */
+static bool meet(const Union *u, uint32_t i, uint32_t j)
+{
+    uint32_t p = u->place[i], q = u->place[j], far = p > q ? p - q : q - p;
+    if (far == 1 || (far == 2 && p % 2 == 0))
+        return false;
+    uint32_t s = ring_start(&u->part, i), k = ring_start(&u->part, j);
+    return !apart(u->part.v + s, u->part.end[i] - s, u->part.v + k, u->part.end[j] - k);
+}
+
 /* Area of what two parts have in common. */
 static double shared(Union *u, uint32_t i, uint32_t j)
 {
     uint32_t s = ring_start(&u->part, i), k = ring_start(&u->part, j), m = u->part.end[j] - k;
     const Vec2 *knife = u->part.v + k;
-    if (apart(u->part.v + s, u->part.end[i] - s, knife, m))
-        return 0.0;
     rings_reset(u->ping);
     rings_copy(u->ping, u->part.v + s, u->part.end[i] - s);
     for (uint32_t e = 0; e < m; e++) {
@@ -150,22 +172,38 @@ static double shared(Union *u, uint32_t i, uint32_t j)
     return ring_area(u->ping->v, u->ping->n_v);
 }
 
-/* What of part i no part ranked before it hides. */
+/* What of a part no part ranked before it hides. Where those that hide some of it don't overlap, what each hides is taken away. */
 static double unhidden(Union *u, uint32_t place)
 {
-    uint32_t i = u->rank[place], s = ring_start(&u->part, i);
-    if (place == 1) {
-        double own = u->size[1] - shared(u, i, u->rank[0]);
+    enum { FEW = 6 };
+    uint32_t i = u->rank[place], knife[FEW], n = 0, s = ring_start(&u->part, i);
+    bool parted = true;
+    for (uint32_t j = 0; j < place && parted; j++) {
+        if (!meet(u, i, u->rank[j]))
+            continue;
+        for (uint32_t k = 0; k < n && parted; k++)
+            parted = !meet(u, u->rank[j], knife[k]);
+        if (n == FEW)
+            parted = false;
+        else
+            knife[n++] = u->rank[j];
+    }
+    if (parted) {
+        double own = u->size[place];
+        for (uint32_t k = 0; k < n; k++)
+            own -= shared(u, i, knife[k]);
         return MAX(own, 0.0);
     }
     rings_reset(u->rest);
     rings_copy(u->rest, u->part.v + s, u->part.end[i] - s);
     for (uint32_t j = 0; j < place && u->rest->n > 0; j++) {
-        uint32_t knife = u->rank[j], k = ring_start(&u->part, knife);
+        uint32_t other = u->rank[j], k = ring_start(&u->part, other);
+        if (!meet(u, i, other))
+            continue;
         rings_reset(u->next);
         for (uint32_t f = 0; f < u->rest->n; f++) {
             uint32_t t = ring_start(u->rest, f);
-            subtract(u, u->rest->v + t, u->rest->end[f] - t, u->part.v + k, u->part.end[knife] - k, u->next);
+            subtract(u, u->rest->v + t, u->rest->end[f] - t, u->part.v + k, u->part.end[other] - k, u->next);
         }
         Rings *swap = u->rest;
         u->rest = u->next;
@@ -208,7 +246,7 @@ static double square_area(Union *u, uint32_t first, uint32_t last, Vec2 corner, 
             rings_copy(u->ping, u->part.v + s, u->part.end[i] - s);
             if (union_cut(u, vec2(1.0, 0.0), c.x + h) && union_cut(u, vec2(-1.0, 0.0), -c.x) && union_cut(u, vec2(0.0, 1.0), c.y + h) &&
                 union_cut(u, vec2(0.0, -1.0), -c.y))
-                rings_copy(&u->part, u->ping->v, u->ping->n_v);
+                union_put(u, u->place[i]);
             full = ring_area(u->part.v + from, u->part.n_v - from) >= h * h * (1.0 - 1e-12);
         }
         sum += full ? h * h : square_area(u, n, u->part.n, c, h, depth + 1);
@@ -220,6 +258,8 @@ static double square_area(Union *u, uint32_t first, uint32_t last, Vec2 corner, 
 
 double union_area(Union *u)
 {
+    if (u->part.n == 1)
+        return ring_area(u->part.v, u->part.n_v);
     return square_area(u, 0, u->part.n, vec2(0.0, 0.0), 1.0, 0);
 }
 
@@ -237,7 +277,7 @@ static double triangle_area(Union *u, const Vec2 *t)
             left = union_cut(u, outer, vec_dot(t[k], outer));
         }
         if (left)
-            rings_copy(&u->part, u->ping->v, u->ping->n_v);
+            union_put(u, u->place[i]);
     }
     double area = square_area(u, n, u->part.n, vec2(0.0, 0.0), 1.0, 0);
     u->part.n = n;

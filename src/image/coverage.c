@@ -57,19 +57,98 @@ static void tile_enter(Tile *t, TileBox box, uint32_t stroke)
     }
 }
 
-static void add_wedge(Union *u, const Stroke *s, Vec2 corner)
+/* ---- joints ---- */
+
+/* How stroke s and the one before it, which are cut at their joint, part what is there. */
+typedef struct {
+    bool bent;  /* there is a wedge between them, on the outer side */
+    bool apart; /* nothing belongs to both */
+    bool sharp; /* the wedge is so slim that both may as well go on to where they meet */
+    Vec2 side;  /* the half-plane that is the first one's, through the joint; (0, 0): it makes no difference */
+} Joint;
+
+/* Both sides of the inner side touch the disc at the joint, so that they meet in the middle between their normals. What the first has beyond the line there
+ * from the joint the second has, too, as long as that ends no earlier. */
+static Joint joint_of(const Stroke *s)
+{
+    const Capsule *a = &s[-1].shape, *b = &s->shape;
+    double turn = vec_cross(a->d, b->d), ahead = vec_dot(a->d, b->d), sign = turn > 0.0 ? 1.0 : -1.0, r2 = b->ra * b->ra;
+    Joint j = {.bent = 0.5 * r2 * fabs(turn) > 1e-6 || ahead < 0.0};
+    j.apart = !j.bent;
+    if (!j.bent || ahead < 0.0 || b->ra * fabs(turn) > MIN(a->length, b->length))
+        return j;
+    Vec2 middle = vec_add(capsule_normal(a, sign), capsule_normal(b, sign));
+    j.apart = vec_dot(middle, a->d) <= 0.0 && vec_dot(middle, b->d) >= 0.0;
+    if (!j.apart)
+        return j;
+    double half = fabs(turn) / (1.0 + ahead); /* tangent of half the angle; a corner has about its third power by r² / 3 more than the disc */
+    j.sharp = r2 * half * half * half < 6e-5;
+    j.side = vec2(sign * middle.y, -sign * middle.x);
+    return j;
+}
+
+/* May the disc reach the pixel? */
+static bool is_near(Vec2 centre, double radius, Vec2 corner)
+{
+    double reach = radius + 0.7072;
+    return vec_dist2(centre, vec2(corner.x + 0.5, corner.y + 0.5)) < reach * reach;
+}
+
+/* Is an end disc of another stroke within this one, so that the other one may be cut there? Of two that hold each other's ends one must stay whole: the `earlier`
+ * one, or one whose ends are not in question. */
+static bool holds(const Stroke *s, Vec2 centre, double radius, bool earlier)
 {
     const Capsule *k = &s->shape;
-    double reach = k->ra + 0.7072, turn = fabs(vec_cross(s->before, k->d)), wedge_area = 0.5 * k->ra * k->ra * turn;
-    if ((wedge_area > 1e-6 || vec_dot(s->before, k->d) < 0.0) &&
-        vec_dist2(k->a, vec2(corner.x + 0.5, corner.y + 0.5)) < reach * reach)
-        union_add_wedge(u, k->a, k->ra, s->before, k->d, corner);
+    double t, along = vec_dot(vec_sub(centre, k->a), k->d);
+    bool within = k->length > 0.0 && ((s->cut & CUT_A) != 0 || along >= radius) && ((s->cut & CUT_B) != 0 || along <= k->length - radius);
+    return (earlier || within) && capsule_distance(k, centre, &t) + radius <= 1e-9;
+}
+
+/* Ends of a stroke that needn't be round: those at joints, and those that another stroke hides, as veins begin in veins. */
+static unsigned plain_ends(const Tile *t, uint32_t pixel, uint32_t stroke, Vec2 corner)
+{
+    const Stroke *all = t->p->strokes->v, *s = &all[stroke];
+    unsigned cut = s->cut;
+    for (int end = 0; end < 2 && s->shape.length > 0.0; end++) {
+        Vec2 c = end == 0 ? s->shape.a : s->shape.b;
+        double r = end == 0 ? s->shape.ra : s->shape.rb;
+        unsigned bit = end == 0 ? CUT_A : CUT_B;
+        if ((cut & bit) != 0 || !is_near(c, r, corner))
+            continue;
+        for (uint32_t l = t->head[pixel]; l != NONE && (cut & bit) == 0; l = t->link[l].next)
+            if (t->link[l].stroke != stroke && holds(&all[t->link[l].stroke], c, r, t->link[l].stroke < stroke))
+                cut |= bit;
+    }
+    return cut;
 }
 
 static void tile_blade(Tile *t, TileBox box)
 {
     ring_within(t->p->margin, t->p->n_margin, (Box2){box.x0, box.y0, box.x1, box.y1}, &t->blade, &t->spare);
     t->has_blade = true;
+}
+
+/* Strokes come last one first. */
+static void add_strokes(Tile *t, uint32_t pixel, Vec2 corner)
+{
+    uint32_t place = 0;
+    Joint after = {0}; /* with the one that comes next along the vein */
+    union_reset(&t->area);
+    for (uint32_t l = t->head[pixel]; l != NONE; l = t->link[l].next) {
+        uint32_t stroke = t->link[l].stroke, next = t->link[l].next;
+        const Stroke *s = &t->p->strokes->v[stroke];
+        StrokeEnds ends = {plain_ends(t, pixel, stroke, corner), after.sharp ? CUT_B : CUT_NONE, {{0.0, 0.0}, after.side}};
+        bool has_joint = (s->cut & CUT_A) != 0, has_next = has_joint && next != NONE && t->link[next].stroke + 1 == stroke;
+        bool near = has_joint && is_near(s->shape.a, s->shape.ra, corner);
+        Joint joint = near || has_next ? joint_of(s) : (Joint){0};
+        after = has_next ? joint : (Joint){0};
+        ends.mitre |= after.sharp ? CUT_A : CUT_NONE;
+        ends.side[0] = vec2(-after.side.x, -after.side.y);
+        union_add(&t->area, &s->shape, &ends, corner, place);
+        if (near && joint.bent && !after.sharp)
+            union_add_wedge(&t->area, s->shape.a, s->shape.ra, s[-1].shape.d, s->shape.d, corner, place + 1);
+        place += after.apart ? 2 : 4;
+    }
 }
 
 /* Veins end at the margin: what a first node on it or a wide vein in a narrow base has beyond is of the petiole. */
@@ -79,13 +158,7 @@ static float pixel_cover(Tile *t, TileBox box, uint32_t pixel, Vec2 corner, floa
         return blade;
     if (t->head[pixel] == NONE)
         return 0.0f;
-    union_reset(&t->area);
-    for (uint32_t l = t->head[pixel]; l != NONE; l = t->link[l].next) {
-        const Stroke *s = &t->p->strokes->v[t->link[l].stroke];
-        union_add(&t->area, &s->shape, s->cut, corner);
-        if ((s->cut & CUT_A) != 0)
-            add_wedge(&t->area, s, corner);
-    }
+    add_strokes(t, pixel, corner);
     if (blade == 1.0f) {
         double area = union_area(&t->area);
         return (float)MIN(area, 1.0);

@@ -24,9 +24,28 @@ static double srgb_at(const double *curve, double x)
     return curve[i] + (curve[i + 1] - curve[i]) * (x * CURVE - i);
 }
 
+/* 0 for what is not a number. */
+static inline int32_t to_level(double v, double top)
+{
+    v = v > 0.0 ? v : 0.0;
+    v = v < top ? v : top;
+    return (int32_t)(v + 0.5);
+}
+
+enum { UNSURE = 0xFFFF };
+
+static void list_quick(Encoder *e)
+{
+    e->quick = g_new(uint16_t, CURVE);
+    for (int i = 0; i < CURVE; i++) {
+        int32_t level = to_level(e->srgb[i] * 255.0, 255.0), next = to_level(e->srgb[i + 1] * 255.0, 255.0);
+        e->quick[i] = level == next ? (uint16_t)level : UNSURE;
+    }
+}
+
 void encoder_init(Encoder *e, const Plane *p, int depth)
 {
-    *e = (Encoder){depth == 16 ? 16 : 8, p->channels, FALSE, NULL};
+    *e = (Encoder){depth == 16 ? 16 : 8, p->channels, FALSE, NULL, NULL};
     if (p->kind == PLANE_LABEL) {
         e->packed = p->high > 65535.0 && p->channels == 1;
         if (e->packed) {
@@ -40,24 +59,18 @@ void encoder_init(Encoder *e, const Plane *p, int depth)
         e->srgb = g_new(double, CURVE + 1);
         for (int i = 0; i <= CURVE; i++)
             e->srgb[i] = srgb_encode((double)i / CURVE);
+        if (e->depth == 8 && e->channels < 4)
+            list_quick(e);
     }
 }
 
 void encoder_clear(Encoder *e)
 {
-    g_free(e->srgb);
-    e->srgb = NULL;
+    g_clear_pointer(&e->srgb, g_free);
+    g_clear_pointer(&e->quick, g_free);
 }
 
 enum { BLOCK = 128 }; /* values worked on together, in loops that vector instructions take in */
-
-/* 0 for what is not a number. */
-static inline int32_t to_level(double v, double top)
-{
-    v = v > 0.0 ? v : 0.0;
-    v = v < top ? v : top;
-    return (int32_t)(v + 0.5);
-}
 
 /* Do n values all have the bits of the first? What surrounds the blade does. */
 static inline bool all_same(const float *in, uint32_t n)
@@ -117,6 +130,16 @@ static void colour_row(const Encoder *e, const float *in, uint32_t n, double top
     }
 }
 
+/* The same for 8 bits without opacity. */
+static void quick_row(const Encoder *e, const float *in, uint32_t n, uint8_t *out)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        float v = in[i] > 0.0f ? in[i] : 0.0f;
+        uint32_t level = v < 1.0f ? e->quick[(uint32_t)(v * CURVE)] : 255;
+        out[i] = (uint8_t)(level != UNSURE ? level : (uint32_t)to_level(srgb_at(e->srgb, (double)v) * 255.0, 255.0));
+    }
+}
+
 WIDE static void data_row(const Encoder *e, const float *in, uint32_t n, double low, double gain, double top, uint8_t *out)
 {
     int32_t level[BLOCK];
@@ -137,6 +160,8 @@ void encoder_row(const Encoder *e, const Plane *p, uint32_t y, uint8_t *out)
     double top = e->depth == 16 ? 65535.0 : 255.0, range = p->high - p->low;
     if (e->packed)
         pack_row(in, n, out);
+    else if (e->quick)
+        quick_row(e, in, n, out);
     else if (p->kind == PLANE_COLOUR)
         colour_row(e, in, n, top, out);
     else if (p->kind == PLANE_DATA)

@@ -10,6 +10,7 @@ typedef struct {
     uint32_t channels; /* of the file */
     gboolean packed;   /* labels above 65535: value = R * 65536 + G * 256 + B */
     double *srgb;      /* curve for colour planes, else NULL */
+    uint16_t *quick;   /* levels of 8 bits at its steps, where they don't change up to the next one; NULL: of 16 bits they do */
 } Encoder;
 
 /* Chooses the layout for a plane when `depth` bits are asked for. */

@@ -107,47 +107,102 @@ static bool cut_disc(Union *u, const Capsule *k, Vec2 own, double r, Vec2 other,
     return true;
 }
 
-static bool cut_stroke(Union *u, const Capsule *k, StrokeCut ends, Vec2 corner)
+/* union_cut, after a look at the whole pixel. */
+static inline bool cut_pixel(Union *u, Vec2 normal, double bound)
+{
+    double reach = 0.5 * (fabs(normal.x) + fabs(normal.y)), beyond = 0.5 * (normal.x + normal.y) - bound;
+    if (beyond <= -reach)
+        return true;
+    return beyond < reach && union_cut(u, normal, bound);
+}
+
+static bool is_none(Vec2 v)
+{
+    return v.x == 0.0 && v.y == 0.0;
+}
+
+/* Where sides and disc touch, between the disc's centre and there, the disc is within the sides: by little where they run all but along each other. */
+static bool is_slim(double radius, double taper)
+{
+    return radius * radius * fabs(taper * taper * taper) < 3e-5;
+}
+
+static bool cut_stroke(Union *u, const Capsule *k, const StrokeEnds *ends, Vec2 corner)
 {
     Vec2 a = vec_sub(k->a, corner), b = vec_sub(k->b, corner);
-    if ((ends & CUT_A) != 0 && !union_cut(u, vec2(-k->d.x, -k->d.y), -vec_dot(a, k->d)))
+    if ((ends->cut & ~ends->mitre & CUT_A) != 0 && !cut_pixel(u, vec2(-k->d.x, -k->d.y), -vec_dot(a, k->d)))
         return false;
-    if ((ends & CUT_B) != 0 && !union_cut(u, k->d, vec_dot(b, k->d)))
+    if ((ends->cut & ~ends->mitre & CUT_B) != 0 && !cut_pixel(u, k->d, vec_dot(b, k->d)))
+        return false;
+    if (!is_none(ends->side[0]) && !cut_pixel(u, ends->side[0], vec_dot(a, ends->side[0])))
+        return false;
+    if (!is_none(ends->side[1]) && !cut_pixel(u, ends->side[1], vec_dot(b, ends->side[1])))
         return false;
     if (k->length > 0.0)
         for (double sign = -1.0; sign <= 1.0; sign += 2.0) {
             Vec2 normal = capsule_normal(k, sign);
-            if (!union_cut(u, normal, vec_dot(a, normal) + k->ra))
+            if (!cut_pixel(u, normal, vec_dot(a, normal) + k->ra))
                 return false;
         }
     /* Beyond the chord through the tangent points the disc bounds the stroke. */
-    bool at_a = k->length == 0.0, at_b = false;
-    for (uint32_t i = 0; i < u->ping->n_v && k->length > 0.0; i++) {
+    bool at_a = k->length == 0.0, at_b = false, may_a = (ends->cut & CUT_A) == 0 || !is_slim(k->ra, k->s), may_b = (ends->cut & CUT_B) == 0 || !is_slim(k->rb, k->s);
+    for (uint32_t i = 0; i < u->ping->n_v && k->length > 0.0 && (may_a || may_b); i++) {
         double along = vec_dot(vec_sub(u->ping->v[i], a), k->d);
-        at_a = at_a || along < k->ra * k->s;
-        at_b = at_b || along > k->length + k->rb * k->s;
+        at_a = at_a || (may_a && along < k->ra * k->s);
+        at_b = at_b || (may_b && along > k->length + k->rb * k->s);
     }
     return (!at_a || cut_disc(u, k, a, k->ra, b, k->rb)) && (!at_b || cut_disc(u, k, b, k->rb, a, k->ra));
 }
 
 static const Vec2 pixel[4] = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
 
-void union_add(Union *u, const Capsule *k, StrokeCut ends, Vec2 corner)
+void union_add(Union *u, const Capsule *k, const StrokeEnds *ends, Vec2 corner, uint32_t place)
 {
     rings_reset(u->ping);
     rings_copy(u->ping, pixel, 4);
     if (cut_stroke(u, k, ends, corner))
-        rings_copy(&u->part, u->ping->v, u->ping->n_v);
+        union_put(u, place);
 }
 
-void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec2 corner)
+static Vec2 unit(Vec2 v)
 {
-    Capsule disc = capsule_new(centre, radius, centre, radius);
-    Vec2 c = vec_sub(centre, corner);
-    rings_reset(u->ping);
-    rings_copy(u->ping, pixel, 4);
-    if (union_cut(u, d1, vec_dot(c, d1)) && union_cut(u, vec2(-d0.x, -d0.y), -vec_dot(c, d0)) &&
-        cut_stroke(u, &disc, CUT_NONE, corner))
-        rings_copy(&u->part, u->ping->v, u->ping->n_v);
+    return vec_scale(v, 1.0 / sqrt(vec_norm2(v)));
 }
 
+/* Directions around the arc from n0 to n1, of which `middle` is the middle one: by halves, until there are so many chords that the area between one and the arc
+ * stays below about 2e-4. Returns the number of chords. */
+enum { MOST_CHORDS = 64 };
+static uint32_t spread(Vec2 n0, Vec2 n1, Vec2 middle, double radius, Vec2 *to)
+{
+    double chord = sqrt(vec_norm2(vec_sub(n1, n0)));
+    uint32_t chords = 1;
+    while (chords < MOST_CHORDS && (chord > 0.7 * chords || chord * chord * chord * radius * radius > 0.0024 * chords * chords * chords))
+        chords *= 2;
+    to[0] = n0;
+    to[chords] = n1;
+    for (uint32_t step = chords; step > 1; step /= 2)
+        for (uint32_t i = 0; i < chords; i += step)
+            to[i + step / 2] = step == chords ? middle : unit(vec_add(to[i], to[i + step]));
+    return chords;
+}
+
+void union_add_wedge(Union *u, Vec2 centre, double radius, Vec2 d0, Vec2 d1, Vec2 corner, uint32_t place)
+{
+    Vec2 arc[MOST_CHORDS + 1], c = vec_sub(centre, corner);
+    bool left = vec_cross(d0, d1) > 0.0; /* then the wedge is to the right */
+    Vec2 n0 = left ? vec2(d0.y, -d0.x) : vec2(-d0.y, d0.x), n1 = left ? vec2(d1.y, -d1.x) : vec2(-d1.y, d1.x);
+    uint32_t n = spread(n0, n1, unit(vec_sub(d0, d1)), radius, arc);
+    /* Chords so far out that the area is the arc's: by the root of x / sin x. */
+    double s = vec_cross(arc[0], arc[1]), s2 = s * s, r = radius * sqrt(1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0)));
+    rings_reset(u->ping);
+    rings_room(u->ping, n + 2);
+    Vec2 *v = u->ping->v, *to = v;
+    to = put_point(v, to, c);
+    for (uint32_t i = 0; i <= n; i++)
+        to = put_point(v, to, vec_add(c, vec_scale(arc[left ? i : n - i], r)));
+    u->ping->n_v = (uint32_t)(to - v);
+    rings_close(u->ping);
+    if (u->ping->n > 0 && union_cut(u, vec2(1.0, 0.0), 1.0) && union_cut(u, vec2(-1.0, 0.0), 0.0) && union_cut(u, vec2(0.0, 1.0), 1.0) &&
+        union_cut(u, vec2(0.0, -1.0), 0.0))
+        union_put(u, place);
+}

@@ -262,7 +262,6 @@ static void join(Stroke *a, Stroke *b)
         return;
     a->cut |= CUT_B;
     b->cut |= CUT_A;
-    b->before = a->shape.d;
 }
 
 static void emit(Builder *b, uint32_t vein, uint8_t order)
@@ -281,8 +280,7 @@ static void emit(Builder *b, uint32_t vein, uint8_t order)
                                 (float)p->birth,
                                 (float)k[at[i + 1] - 1].birth,
                                 order,
-                                CUT_NONE,
-                                {0.0, 0.0}};
+                                CUT_NONE};
         if (i > 0)
             join(&s->v[s->n - 2], &s->v[s->n - 1]);
     }

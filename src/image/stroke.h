@@ -12,8 +12,7 @@ typedef struct {
     uint32_t vein;
     float birth0, birth1; /* step of birth at its ends */
     uint8_t order;
-    uint8_t cut; /* StrokeCut: ends at which it may be cut straight, as the next piece and a wedge cover the rest */
-    Vec2 before; /* direction of the piece before, if cut at a */
+    uint8_t cut; /* StrokeCut: ends at which it may be cut straight, as the next piece, which is its neighbour in the list, and a wedge cover the rest */
 } Stroke;
 
 typedef struct {

@@ -2,14 +2,17 @@
 
 #include <glib.h>
 
-static uint32_t index_of(double v, double from, double cell, uint32_t n)
+static inline uint32_t index_of(double v, double from, double per_cell, uint32_t n)
 {
-    double i = floor((v - from) / cell);
+    double i = (v - from) * per_cell;
     return i > 0.0 ? (uint32_t)MIN(i, (double)n - 1.0) : 0;
 }
 
-uint32_t edge_grid_column(const EdgeGrid *g, double x) { return index_of(x, g->corner.x, g->cell, g->nx); }
-uint32_t edge_grid_row(const EdgeGrid *g, double y) { return index_of(y, g->corner.y, g->cell, g->ny); }
+static inline uint32_t column_of(const EdgeGrid *g, double x) { return index_of(x, g->corner.x, g->per_cell, g->nx); }
+static inline uint32_t row_of(const EdgeGrid *g, double y) { return index_of(y, g->corner.y, g->per_cell, g->ny); }
+
+uint32_t edge_grid_column(const EdgeGrid *g, double x) { return column_of(g, x); }
+uint32_t edge_grid_row(const EdgeGrid *g, double y) { return row_of(g, y); }
 
 static void lay_out(EdgeGrid *g, const Vec2 *node, const uint32_t (*edge)[2], uint32_t n, double pad)
 {
@@ -25,6 +28,7 @@ static void lay_out(EdgeGrid *g, const Vec2 *node, const uint32_t (*edge)[2], ui
     double w = box.x1 - box.x0, h = box.y1 - box.y0, most = 2.0 * n + 16.0;
     /* cells of the mean length take about as many entries as edges; no more cells than `most` */
     g->cell = MAX(MAX(n > 0 ? length / n : 1.0, sqrt(w * h / most)), MAX(MAX(w, h) / most, 1e-300));
+    g->per_cell = MIN(1.0 / g->cell, 1e300);
     g->corner = vec2(box.x0, box.y0);
     g->nx = (uint32_t)(w / g->cell) + 1;
     g->ny = (uint32_t)(h / g->cell) + 1;
@@ -40,15 +44,15 @@ static void columns_in_row(const EdgeGrid *g, Vec2 a, Vec2 b, uint32_t row, doub
         left = MAX(left, MIN(p, q));
         right = MIN(right, MAX(p, q));
     }
-    *x0 = edge_grid_column(g, left - pad);
-    *x1 = edge_grid_column(g, right + pad);
+    *x0 = column_of(g, left - pad);
+    *x1 = column_of(g, right + pad);
 }
 
 /* Counts an edge in each of its cells, or enters it there. */
 static void enter(EdgeGrid *g, Vec2 a, Vec2 b, uint32_t edge, double pad, bool fill)
 {
-    uint32_t y0 = edge_grid_row(g, MIN(a.y, b.y) - pad), y1 = edge_grid_row(g, MAX(a.y, b.y) + pad);
-    uint32_t left = edge_grid_column(g, MIN(a.x, b.x) - pad), right = edge_grid_column(g, MAX(a.x, b.x) + pad);
+    uint32_t y0 = row_of(g, MIN(a.y, b.y) - pad), y1 = row_of(g, MAX(a.y, b.y) + pad);
+    uint32_t left = column_of(g, MIN(a.x, b.x) - pad), right = column_of(g, MAX(a.x, b.x) + pad);
     for (uint32_t y = y0; y <= y1; y++) {
         uint32_t x0 = left, x1 = right;
         if (y0 < y1 && left < right)

@@ -7,6 +7,7 @@
 typedef struct {
     Vec2 corner;
     double cell; /* side, as long as the mean edge or longer */
+    double per_cell; /* 1 / cell */
     uint32_t nx, ny;
     uint32_t *start; /* [nx * ny + 1] into item */
     uint32_t *item;  /* edges, ascending within a cell */

@@ -155,6 +155,31 @@ static void test_png_colour(void)
     }
 }
 
+/* Levels of 8 bits, which come from a table where they can, are those of 16 bits, rounded anew where these leave no doubt. */
+static void test_colour_levels(void)
+{
+    enum { N = 1 << 18, EXTRA = 6 };
+    static const float extra[EXTRA] = {-0.5f, 1.0f, 1.5f, 1e-30f, 0.99999994f, NAN};
+    Plane *p = plane_new(N + EXTRA, 1, 1, PLANE_COLOUR);
+    for (uint32_t i = 0; i < N; i++)
+        p->px[i] = (float)i / N;
+    memcpy(p->px + N, extra, sizeof extra);
+    uint8_t *few = g_malloc(N + EXTRA), *many = g_malloc(2 * (N + EXTRA));
+    Encoder e;
+    encoder_init(&e, p, 8);
+    g_assert_nonnull(e.quick);
+    encoder_row(&e, p, 0, few);
+    encoder_clear(&e);
+    encoder_init(&e, p, 16);
+    encoder_row(&e, p, 0, many);
+    encoder_clear(&e);
+    for (uint32_t i = 0; i < N + EXTRA; i++)
+        g_assert_cmpfloat(fabs(few[i] * 257.0 - (many[2 * i] << 8 | many[2 * i + 1])), <=, 129.0);
+    g_free(few);
+    g_free(many);
+    plane_free(p);
+}
+
 static void test_png_labels(void)
 {
     static const float top[] = {255.0f, 256.0f, 65535.0f, 65536.0f, 1234567.0f};
@@ -644,6 +669,7 @@ int main(int argc, char **argv)
     dir = g_dir_make_tmp("venation-image-XXXXXX", NULL);
     g_test_add_func("/image/png/data", test_png_data);
     g_test_add_func("/image/png/colour", test_png_colour);
+    g_test_add_func("/image/png/colour/levels", test_colour_levels);
     g_test_add_func("/image/png/labels", test_png_labels);
     g_test_add_func("/image/png/texts", test_png_texts);
     g_test_add_func("/image/half", test_half);
