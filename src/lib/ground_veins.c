@@ -6,6 +6,7 @@
 #include "scan/found.h"
 #include "sim/bare.h"
 #include "sim/lobes.h"
+#include "sim/lturtle_axis.h"
 
 /* ---- drawn ---- */
 
@@ -90,9 +91,32 @@ enum { PRESET_AUTO, PRESET_PINNATE, PRESET_PALMATE };
  * smaller. */
 static const double most_bare = 0.25, least_bare = 0.125, much_bare = 0.2, better_by = 0.75;
 
-static Network *draw_lsystem(const Ground *g, const Params *p, bool palmate, double length, uint64_t seed, GError **error)
+/* The midrib that the scan shows, so that the blade folds where the photo does; false where none is found or to be looked for. It is the first of the
+ * veins found that goes from near the base to near the tip. */
+static bool find_midrib(const Ground *g, const Params *p, LAxis *axis)
+{
+    if (!g->scan || params_choice(p, PARAM_SCAN_VEINS) != 0)
+        return false;
+    FoundDef def = settings_found(p);
+    def.orders = 1;
+    Polygon *outline = ground_outline_in(g, g->scan, &g->to_scan);
+    const Box2 *b = &outline->box;
+    bool speck = MAX(b->x1 - b->x0, b->y1 - b->y0) < FOUND_SHORTEST, found = false;
+    Drawing *veins = speck ? NULL : found_veins(g->scan, outline, g->base, g->tip, &def, NULL);
+    polygon_free(outline);
+    if (veins)
+        drawing_to_leaf(veins, g->base, g->tip);
+    for (uint32_t i = 0; veins && i < veins->n && !found; i++)
+        found = veins->vein[i].order == 1 && laxis_of_midrib(veins->vein[i].point, veins->vein[i].n, axis);
+    drawing_free(veins);
+    return found;
+}
+
+/* `axis`: the midrib; NULL: by the outline. */
+static Network *draw_lsystem(const Ground *g, const Params *p, const LAxis *axis, bool palmate, double length, uint64_t seed, GError **error)
 {
     LSystemDef def = settings_lsystem(p, palmate, seed);
+    def.axis = axis;
     Network *net = lsystem_network(&def, g->outline, length, NULL, error);
     if (!net)
         g_prefix_error(error, "[lsystem]: ");
@@ -108,10 +132,10 @@ static bool has_lobes(const Polygon *outline)
 }
 
 /* Whether the other preset leaves much less of the blade bare; then the network is its own. */
-static bool draw_other(const Ground *g, const Params *p, bool palmate, uint64_t seed, Network **net, double *bare, Vec2 *centre)
+static bool draw_other(const Ground *g, const Params *p, const LAxis *axis, bool palmate, uint64_t seed, Network **net, double *bare, Vec2 *centre)
 {
     Vec2 at;
-    Network *other = draw_lsystem(g, p, palmate, (*net)->length, seed, NULL);
+    Network *other = draw_lsystem(g, p, axis, palmate, (*net)->length, seed, NULL);
     double share = other ? bare_disc(other, &at) : HUGE_VAL;
     bool better = share < better_by * *bare;
     if (better) {
@@ -143,13 +167,15 @@ Network *ground_lsystem(Ground *g, const Params *p, double length, uint64_t seed
 {
     int preset = params_choice(p, PARAM_LSYSTEM_PRESET);
     bool own = settings_lsystem_is_own(p), palmate = preset == PRESET_PALMATE || (preset == PRESET_AUTO && !own && has_lobes(g->outline));
-    Network *net = draw_lsystem(g, p, palmate, length, seed, error);
+    LAxis midrib;
+    const LAxis *axis = find_midrib(g, p, &midrib) ? &midrib : NULL;
+    Network *net = draw_lsystem(g, p, axis, palmate, length, seed, error);
     Vec2 centre;
     if (!net || own)
         return net;
     net->length = length;
     double bare = bare_disc(net, &centre);
-    if (bare > much_bare && preset == PRESET_AUTO && draw_other(g, p, !palmate, seed, &net, &bare, &centre))
+    if (bare > much_bare && preset == PRESET_AUTO && draw_other(g, p, axis, !palmate, seed, &net, &bare, &centre))
         palmate = !palmate;
     g->lsystem = preset_name[palmate];
     if (bare > most_bare && bare * (net->margin->box.x1 - net->margin->box.x0) > least_bare * length)

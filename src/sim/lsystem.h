@@ -29,7 +29,12 @@
  *   $               draws on to the margin or the end of the field
  *
  * and all others mean nothing. The step of a symbol that the k-th iteration wrote is step · length_scale^k long, its width
- * width · width_scale^k. */
+ * width · width_scale^k.
+ *
+ * In a curved blade all this is as if its middle line (sim/lturtle_axis.h), or the midrib that is given, were straight: at any height the turtle's
+ * directions are turned as the line is there. So what goes straight on from the base follows the line, and what leaves it at an angle leaves it
+ * at that angle, and bends as the line does. Steps are parts of the line's length. It concerns the middle lobe; other lobes' veins head for
+ * their tips as they are. Where the line is straight, nothing is turned, and where there is no blade there is none. */
 typedef struct {
     const char *axiom;
     const char *const *production; /* [n_productions] "F=FF[+F]": one symbol, no bracket, and what replaces it, maybe nothing. Several for
@@ -47,6 +52,7 @@ typedef struct {
     WidthDef widths;
     double width;       /* segments, 1e-9 … 1e6 */
     double width_scale; /* 0.001 … 10 */
+    const struct LAxis *axis; /* the midrib that the drawing follows (sim/lturtle_axis.h); NULL: the blade's middle line */
 } LSystemDef;
 
 /* A pinnate leaf in which `margin_veins` S laterals meet the margin, by the numbers of section 4.2: N = (S - 2) / 2 iterations and an
@@ -88,8 +94,8 @@ void lstring_free(LString *s);
  * inside, and with it the rest of its branch; veins may cross one another if the productions make them. Nodes are numbered as they are
  * drawn, so that tails are older than heads; births are the iterations, and never before the parent's. Orders are the depth of
  * brackets, from 1 (in a lobe, from its own vein); a vein is what one branch draws without those that leave it. Flow and rank are network_assign_widths'. *margin_veins,
- * unless NULL, receives how many veins came to the margin. O(pieces + pieces near the margin · vertices); where
- * lobes are asked for, 1900 · vertices more. */
+ * unless NULL, receives how many veins came to the margin. O(pieces + pieces near the margin · vertices); for
+ * the middle line 2700 · vertices more, and where lobes are asked for, 1900. */
 Network *lsystem_network(const LSystemDef *def, const Polygon *leaf, double length, uint32_t *margin_veins, GError **error);
 
 /* Whether the numbers of the definition are in their ranges; lsystem_network asks it too. */

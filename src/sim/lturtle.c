@@ -50,8 +50,8 @@ void lturtle_go(Drawing *d, Turtle *t, double length, uint32_t n, uint16_t born,
             degrees_sincos(t->heading - t->tilt, &sine, &cosine);
             t->heading += d->def->bend * cosine * length / (n * d->unit * t->scale);
         }
-        degrees_sincos(t->wary != 0.0 || t->swerve != 0.0 ? t->heading + lturtle_swerve(d, t, length / n) : t->heading, &sine, &cosine);
-        Vec2 to = vec_add(t->at, vec_scale(vec2(cosine, sine), length / n));
+        double heading = t->wary != 0.0 || t->swerve != 0.0 ? t->heading + lturtle_swerve(d, t, length / n) : t->heading;
+        Vec2 to = vec_add(t->at, vec_scale(lturtle_direction(d, t, heading, length / n), length / n));
         if (!lturtle_in_field(d, t, to)) {
             t->stopped = true;
             return;
@@ -209,11 +209,16 @@ static void drawing_init(Drawing *d, const LSystemDef *def, const Polygon *leaf,
             v[i] = vec_scale(leaf->v[i], length);
         d->margin = polygon_new(v, leaf->n);
         g_free(v);
+        if (def->axis)
+            d->axis = *def->axis;
+        else
+            laxis_of_blade(leaf, &d->axis);
     }
+    double step = d->axis.curved ? def->step * length * d->axis.length : def->step * length;
     d->length = g_new(double, (gsize)def->iterations + 1);
     d->width = g_new(double, (gsize)def->iterations + 1);
     for (uint32_t k = 0; k <= def->iterations; k++) {
-        d->length[k] = k ? d->length[k - 1] * def->length_scale : def->step * length;
+        d->length[k] = k ? d->length[k - 1] * def->length_scale : step;
         d->width[k] = k ? d->width[k - 1] * def->width_scale : def->width;
     }
     d->node = g_array_new(FALSE, FALSE, sizeof(Vec2));

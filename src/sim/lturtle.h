@@ -4,6 +4,7 @@
 
 #include "sim/lobes.h"
 #include "sim/lsystem.h"
+#include "sim/lturtle_axis.h"
 
 enum { NONE = UINT32_MAX, MAX_ORDER = 250 };
 
@@ -15,7 +16,7 @@ typedef struct {
 
 typedef struct {
     Vec2 at;
-    double heading;       /* degrees from the x axis */
+    double heading;       /* degrees from the x axis, in the middle lobe of a curved blade as if its middle line were straight */
     double length, width; /* factors of @ and ! */
     int lobe;             /* 0 the middle one, left of it below 0 */
     double tilt;          /* degrees from the leaf's axis to the lobe's, left positive */
@@ -50,6 +51,7 @@ typedef struct {
     uint32_t n_veins, n_margin;
     Lobes lobes;  /* leaf lengths; looked for when a symbol asks for them */
     bool looked, overflow;
+    LAxis axis; /* of the blade; curved: what is drawn in the middle lobe turns with it */
 } Drawing;
 
 /* --- lturtle.c --- */
@@ -57,12 +59,16 @@ typedef struct {
 /* A straight piece from where the turtle is, if it has a length. */
 void lturtle_draw(Drawing *d, Turtle *t, Vec2 to, uint16_t born, uint32_t depth);
 
-/* `length` straight on in n pieces: veins turn towards the lobe's tip a little before each of them. */
+/* `length` straight on in n pieces: veins turn towards the lobe's tip a little before each of them, and with the blade's middle line. */
 void lturtle_go(Drawing *d, Turtle *t, double length, uint32_t n, uint16_t born, uint32_t depth, bool draws);
 
 static inline uint32_t lturtle_pieces(double length) { return length > 1.0 ? (uint32_t)ceil(MIN(length, 4e9) - 1e-9) : 1; }
 
 /* --- lturtle_blade.c --- */
+
+/* The direction of `degrees` where the turtle is, a unit vector; in a curved blade turned as the middle line is at that height, half of `ahead`
+ * farther on. */
+Vec2 lturtle_direction(const Drawing *d, const Turtle *t, double degrees, double ahead);
 
 /* Where a straight piece from the turtle to `to` ends: there, or just inside the margin, and then the turtle is stopped. FALSE when it has
  * no length. */

@@ -31,9 +31,38 @@ static double way_to_margin(const Polygon *p, Vec2 a, Vec2 b)
     return first;
 }
 
+/* --- which way is up --- */
+
+/* Its own direction; other lobes' primaries are straight. */
+static bool is_turned(const Drawing *d, const Turtle *t) { return d->axis.curved && t->lobe == 0; }
+
+static double axis_at(const Drawing *d, double y) { return d->unit * laxis_x(&d->axis, y / d->unit); }
+
+/* In the frame that has `up` as its y axis. */
+static Vec2 turned(Vec2 direction, Vec2 up)
+{
+    return vec2(direction.x * up.y + direction.y * up.x, direction.y * up.y - direction.x * up.x);
+}
+
+Vec2 lturtle_direction(const Drawing *d, const Turtle *t, double degrees, double ahead)
+{
+    double sine, cosine;
+    degrees_sincos(degrees, &sine, &cosine);
+    Vec2 way = vec2(cosine, sine);
+    if (!is_turned(d, t))
+        return way;
+    Vec2 first = turned(way, laxis_way(&d->axis, t->at.y / d->unit));
+    return turned(way, laxis_way(&d->axis, (t->at.y + 0.5 * ahead * first.y) / d->unit));
+}
+
+/* --- fields --- */
+
 bool lturtle_in_field(const Drawing *d, const Turtle *t, Vec2 at)
 {
-    if (t->side) {
+    if (t->side && is_turned(d, t)) {
+        if (t->side * (axis_at(d, at.y) - at.x) <= 0.0)
+            return false;
+    } else if (t->side) {
         double sine, cosine;
         degrees_sincos(90.0 + t->tilt, &sine, &cosine);
         Vec2 hub = d->looked ? vec_scale(d->lobes.hub, d->unit) : vec2(0.0, 0.0);
@@ -79,10 +108,10 @@ bool lturtle_clip(const Drawing *d, Turtle *t, Vec2 *to)
 
 double lturtle_swerve(const Drawing *d, Turtle *t, double length)
 {
-    double reach = t->scale * d->unit, aside = 90.0 + t->tilt - t->heading, sine, cosine, need = 0.0;
+    double reach = t->scale * d->unit, aside = 90.0 + t->tilt - t->heading, need = 0.0;
     for (int k = 0; t->wary > 0.0 && k <= SWERVES; k++) {
-        degrees_sincos(t->heading + aside * k / SWERVES, &sine, &cosine);
-        if (k < SWERVES && lobes_way(d->margin, t->at, vec2(cosine, sine), room * reach) < room * reach)
+        Vec2 way = lturtle_direction(d, t, t->heading + aside * k / SWERVES, 0.0);
+        if (k < SWERVES && lobes_way(d->margin, t->at, way, room * reach) < room * reach)
             continue;
         need = k == 0 ? 0.0 : aside * (0.5 + 0.5 * k / SWERVES);
         break;
@@ -102,17 +131,21 @@ static void look_for_lobes(Drawing *d)
     Polygon *leaf = polygon_scaled(d->margin, 1.0 / d->unit);
     lobes_find(leaf, &d->lobes);
     polygon_free(leaf);
+    if (d->axis.curved)
+        d->lobes.hub.x = laxis_x(&d->axis, d->lobes.hub.y);
     d->looked = true;
 }
 
-/* Straight on to where primaries part. */
+/* Straight on, or as the midvein bends, to where primaries part. */
 static void to_hub(Drawing *d, Turtle *t, uint16_t born, uint32_t depth)
 {
     look_for_lobes(d);
     Vec2 hub = vec_scale(d->lobes.hub, d->unit), from = t->at;
-    uint32_t n = lturtle_pieces(vec_dist(hub, from));
+    uint32_t n = vec_dist(hub, from) > 0.0 ? lturtle_pieces(vec_dist(hub, from)) : 0; /* it may be there: at the base */
     for (uint32_t k = 1; k <= n && !t->stopped; k++) {
         Vec2 to = k == n ? hub : vec_lerp(from, hub, (double)k / n);
+        if (d->axis.curved)
+            to.x += axis_at(d, to.y) - (axis_at(d, from.y) + (axis_at(d, hub.y) - axis_at(d, from.y)) * k / n);
         if (lturtle_clip(d, t, &to))
             lturtle_draw(d, t, to, born, depth);
     }
@@ -132,6 +165,8 @@ static void to_lobe(Drawing *d, Turtle *t, int side, uint32_t depth)
     }
     t->lobe = lobe;
     t->scale = sqrt(vec_norm2(way));
+    if (is_turned(d, t))
+        way.x = laxis_x(&d->axis, t->at.y / d->unit) - t->at.x / d->unit;
     t->heading = dtrig_atan2(way.y, way.x) / DTRIG_DEGREE;
     t->tilt = t->heading - 90.0;
     t->first = depth;

@@ -164,30 +164,40 @@ typedef struct {
     double angle;                 /* mean of its primaries' and the midvein's laterals' first directions, degrees from the axis */
 } Half;
 
-/* Veins of order 1 and 2 that begin left (or right) of the midvein's own, by where they end. */
+/* Veins of order 1 and 2 that begin left (or right) of the midvein's own, by where they end. The midvein is the primary that ends highest. */
 static Half count_half(const Network *net, int side)
 {
     Half half = {0};
-    uint32_t *begin = g_new(uint32_t, net->n_veins), *end = g_new(uint32_t, net->n_veins), n = 0;
+    uint32_t *begin = g_new(uint32_t, net->n_veins), *end = g_new(uint32_t, net->n_veins), n = 0, midvein = 0;
     uint8_t *order = g_new0(uint8_t, net->n_veins);
+    bool *on = g_new0(bool, net->n_nodes);
+    double highest = -HUGE_VAL;
     for (uint32_t e = 0; e < net->n_edges; e++) {
         uint32_t v = net->vein[e];
         begin[v] = order[v] ? begin[v] : net->tail[e];
         end[v] = net->head[e];
         order[v] = net->order[e];
+        if (net->order[e] == 1 && net->node[net->head[e]].y > highest) {
+            highest = net->node[net->head[e]].y;
+            midvein = v;
+        }
     }
+    for (uint32_t e = 0; e < net->n_edges; e++)
+        if (net->vein[e] == midvein)
+            on[net->tail[e]] = on[net->head[e]] = true;
     for (uint32_t v = 0; v < net->n_veins; v++) {
         Vec2 way = vec_sub(net->node[end[v]], net->node[begin[v]]);
-        if (order[v] > 2 || side * net->node[end[v]].x >= -1e-6 || vec_norm2(way) < 1.0)
+        if (v == midvein || order[v] > 2 || side * net->node[end[v]].x >= -1e-6 || vec_norm2(way) < 1.0)
             continue;
         half.primaries += order[v] == 1;
         half.laterals += order[v] == 2;
-        if (order[v] == 1 || net->node[begin[v]].x == 0.0) {
+        if (order[v] == 1 || on[begin[v]]) {
             half.angle += atan2(fabs(way.x), way.y) * 180.0 / G_PI;
             n++;
         }
     }
     half.angle /= MAX(n, 1);
+    g_free(on);
     g_free(begin);
     g_free(end);
     g_free(order);
@@ -317,20 +327,64 @@ static VenLeaf *grow(const VenParams *p)
     return leaf;
 }
 
+/* The midrib as the botanist traced it, the outline of all veins: how far off the midvein's nodes are in the mean and at most, leaf lengths. */
+static void midrib_off(const VenLeaf *leaf, double *mean, double *most)
+{
+    char *path = in_params("scans", "grape_veins.txt"), *text = NULL;
+    GArray *v = g_array_new(FALSE, FALSE, sizeof(Vec2));
+    g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    for (char *at = text, *end = NULL;; at = end) {
+        double x = g_ascii_strtod(at, &end);
+        if (end == at)
+            break;
+        double y = g_ascii_strtod(end, &end);
+        Vec2 p = vec2(x, y);
+        g_array_append_val(v, p);
+    }
+    Polygon *traced = polygon_new((const Vec2 *)(gpointer)v->data, v->len);
+    const Network *net = leaf->net;
+    double pixels = vec_dist(leaf->ground->base, leaf->ground->tip);
+    uint32_t n = 0;
+    *mean = *most = 0.0;
+    for (uint32_t e = 0; e < net->n_edges; e++) {
+        Vec2 at = vec_scale(net->node[net->head[e]], 1.0 / leaf->length);
+        if (net->order[e] != 1 || at.y < 0.2 || at.y > 0.9 || fabs(at.x) > 0.1)
+            continue;
+        double off = MAX(0.0, -polygon_depth(traced, affine_apply(&leaf->ground->to_scan, at)) / pixels);
+        *mean += off;
+        *most = MAX(*most, off);
+        n++;
+    }
+    *mean /= MAX(n, 1);
+    g_assert_cmpuint(n, >, 150);
+    polygon_free(traced);
+    g_array_unref(v);
+    g_free(text);
+    g_free(path);
+}
+
 static void test_grape(void)
 {
+    double mean, most;
     VenParams *p = scan_params("auto");
     VenLeaf *leaf = grow(p);
     check_halves("grape", leaf->net, 2, 4, 6.0);
     check_sound(leaf->net);
     double bare = bare_disc(leaf->net, NULL);
     g_assert_cmpfloat(bare, <, 0.12);
+    midrib_off(leaf, &mean, &most);
+    g_test_message("grape: midvein off the traced midrib by %.4f, at most %.4f", mean, most);
+    g_assert_cmpfloat(mean, <, 0.002);
+    g_assert_cmpfloat(most, <, 0.006);
     g_assert_null(strstr(ven_leaf_note(leaf), "bare"));
     ven_leaf_free(leaf);
     ven_params_free(p);
 
     p = scan_params("pinnate");
+    ven_params_set(p, "scan.veins", "none", NULL); /* then its midrib isn't looked for either */
     leaf = grow(p);
+    midrib_off(leaf, &mean, &most);
+    g_assert_cmpfloat(mean, >, 0.002);
     g_assert_cmpfloat(bare_disc(leaf->net, NULL), >, 2.0 * bare); /* and yet too little to be told */
     ven_leaf_free(leaf);
     ven_params_set(p, "lsystem.step", "0.01", NULL);
