@@ -5,6 +5,7 @@
 #include "geom/march.h"
 #include "geom/ring.h"
 #include "scan/axis.h"
+#include "scan/axis_base.h"
 #include "scan/gather.h"
 #include "scan/mask.h"
 #include "scan/sharp.h"
@@ -162,6 +163,14 @@ static Vec2 farthest(const Polygon *p, Vec2 from)
     return best;
 }
 
+/* Farthest from the base; but lobes beside a notch at the tip reach farther than it, and so do corners: then where symmetry says. */
+static Vec2 find_tip(const Axis *axis, Vec2 base)
+{
+    Vec2 far = farthest(axis->outline, base), opposite = axis_opposite(axis, base);
+    bool better = axis_symmetry(axis, base, far) < axis_symmetry(axis, base, opposite) - FAR_LESS_SYMMETRIC;
+    return better ? opposite : far;
+}
+
 /* Base by petiole, if that lies about where a leaf can have it, else the end of the line of symmetry that the veins say, or the outline where they
  * don't show. */
 static void find_base(Capture *c, const Axis *axis)
@@ -177,18 +186,11 @@ static void find_base(Capture *c, const Axis *axis)
     if (!shown) {
         if (gather_compare(c->scan, axis->outline, o->base, tip) < -VEINS_SAY)
             o->base = tip;
+        o->base = axis_base(axis, c->scan, o->base, c->def->has_tip ? c->def->tip : find_tip(axis, o->base));
         return;
     }
     o->base = c->def->keep_stalk ? stalk : polygon_nearest(axis->outline, stalk, NULL);
     o->base_from = BASE_STALK;
-}
-
-/* Farthest from the base; but lobes beside a notch at the tip reach farther than it, and so do corners: then where symmetry says. */
-static Vec2 find_tip(const Axis *axis, Vec2 base)
-{
-    Vec2 far = farthest(axis->outline, base), opposite = axis_opposite(axis, base);
-    bool better = axis_symmetry(axis, base, far) < axis_symmetry(axis, base, opposite) - FAR_LESS_SYMMETRIC;
-    return better ? opposite : far;
 }
 
 /* `whole` is the outline that is wanted, `blade` the one without petiole. */

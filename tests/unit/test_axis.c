@@ -119,7 +119,26 @@ static void strip(Leaf *l)
         line(l, vec2(0.045 * k, 0.0), vec2(0.045 * k, 0.98), 0.014, 0.004);
 }
 
-static void (*const shape[])(Leaf *) = {fan, obovate, ovate, lobed, cordate, strip};
+/* An egg with a lobe on its right: the middle of its area is not on the midvein. */
+static void lopsided(Leaf *l)
+{
+    static const Vec2 lobe[] = {{0.16, 0.02}, {0.28, 0.1}, {0.38, 0.25}, {0.42, 0.4}, {0.46, 0.57}, {0.37, 0.52}, {0.28, 0.51}};
+    *l = (Leaf){.name = "lopsided", .tip = vec2(0.0, 1.0), .tip_reach = 0.03};
+    l->v[l->n++] = vec2(0.0, 0.0);
+    for (uint32_t k = 0; k < G_N_ELEMENTS(lobe); k++)
+        l->v[l->n++] = lobe[k];
+    for (int side = 1; side >= -1; side -= 2)
+        for (int k = side > 0 ? 23 : 0; k < 40; k++) {
+            double t = side > 0 ? k / 40.0 : 1.0 - k / 40.0;
+            l->v[l->n++] = vec2(side * 0.85 * (1.0 - t) * sqrt(t), t);
+        }
+    line(l, vec2(0.0, 0.0), vec2(0.0, 0.96), 0.022, 0.006);
+    for (int side = -1; side <= 1; side += 2)
+        for (int k = 1; k <= 3; k++)
+            line(l, vec2(0.0, 0.0), polar(side * 17.0 * k, 0.72 - 0.1 * k), 0.014, 0.005);
+}
+
+static void (*const shape[])(Leaf *) = {fan, obovate, ovate, lobed, cordate, strip, lopsided};
 
 /* --- painting --- */
 

@@ -33,7 +33,7 @@ static const Model models[] = {
     {"ginkgo", "1800", false, false, 0.68, 0.90, 0.94, 0.03, 5, 15},
     {"alchemilla", "3600", false, true, 0.89, 0.77, 0.92, 0.05, 7, 25},
     {"sweetgum", "1400", false, false, 0.90, 0.86, 0.95, 0.03, 5, 5},
-    {"toothed", "1000", false, true, 0.93, 0.67, 0.92, 0.12, 1, 8},
+    {"toothed", "1000", false, true, 0.74, 0.70, 0.92, 0.03, 1, 8},
     {"tertiary", "800", false, true, 0.80, 0.58, 0.90, 0.03, 1, 12},
     {"orchid", "2600", true, false, 0.91, 0.77, 0.92, 0.03, 5, 15},
     {"reticulate", "1800", false, true, 0.70, 0.70, 0.94, 0.03, 1, 3},
