@@ -137,7 +137,8 @@ static int by_left(const void *a, const void *b)
 /* A pair is looked at in the slab where the upper one begins. */
 static bool sweep_slab(Cutter *c, const Slabs *s, uint32_t slab, Span *here, uint32_t n)
 {
-    qsort(here, n, sizeof *here, by_left);
+    if (n > 1) /* of none there is no array */
+        qsort(here, n, sizeof *here, by_left);
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t k = i + 1; k < n && here[k].x0 <= here[i].x1; k++) {
             const Span *a = &here[i], *b = &here[k];
@@ -191,7 +192,8 @@ static void put_edge(GArray *edges, uint32_t from, uint32_t to, int32_t turns)
 static void divide(Cutter *c)
 {
     GArray *edges = g_array_sized_new(FALSE, FALSE, sizeof(WindEdge), c->w->edge->len + c->cut->len);
-    qsort(c->cut->data, c->cut->len, sizeof(Cut), by_edge);
+    if (c->cut->len > 1)
+        qsort(c->cut->data, c->cut->len, sizeof(Cut), by_edge);
     for (uint32_t i = 0, k = 0; i < c->w->edge->len; i++) {
         const WindEdge *e = edge_at(c, i);
         uint32_t last = e->a;
@@ -255,7 +257,8 @@ static bool join_edges(WindLines *w)
 {
     WindEdge *e = (WindEdge *)(void *)w->edge->data;
     uint32_t n = w->edge->len, kept = 0;
-    qsort(e, n, sizeof *e, by_ends);
+    if (n > 1)
+        qsort(e, n, sizeof *e, by_ends);
     for (uint32_t i = 0, k; i < n; i = k) {
         WindEdge sum = e[i];
         for (k = i + 1; k < n && e[k].a == e[i].a && e[k].b == e[i].b; k++)
