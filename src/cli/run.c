@@ -246,7 +246,7 @@ void run_summarise(const Run *run, const char *what)
     if (run->leaf)
         fputs(ven_leaf_note(run->leaf), stderr);
     if (output_stale(run->output))
-        fprintf(stderr, "%s: %u more files there begin with %s, from other runs\n", dir, output_stale(run->output), run->name);
+        fprintf(stderr, "%s: %u more files there begin with %s; this run did not write them, but may have read some\n", dir, output_stale(run->output), run->name);
     g_free(dir);
     g_free(title);
 }

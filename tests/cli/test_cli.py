@@ -8,6 +8,7 @@ Needs the standard library alone. What can't be tested here is skipped with its 
 import json
 import math
 import os
+import random
 import re
 import resource
 import shutil
@@ -746,6 +747,23 @@ def test_capture_pages():
         same(done.status, 0, done.err)
         if (" pages;" in done.err) != bool(note) or (note and note not in done.err):
             raise AssertionError((pages, done.err))
+
+
+def test_capture_ragged():
+    """Noise that makes fringes of the margin is told; a little is not."""
+    for noise, ragged in ((6, False), (100, True)):
+        chance = random.Random(7)
+        grain = [[chance.uniform(-noise, noise) for _ in range(201)] for _ in range(301)]
+
+        def shade(x, y):
+            inside = ((x - 100) / 70) ** 2 + ((y - 150) / 130) ** 2 < 1
+            value = max(0, min(255, round((110 if inside else 170) + grain[y][x])))
+            return value, value, value
+
+        png("noisy.png", 200, 300, shade)
+        done = run("capture", "noisy.png", *CAPTURE, "--maps", "none", "-o", "noisy")
+        same(done.status, 0, done.err)
+        same("the outline is ragged" in done.err, ragged)
 
 
 def test_tracing_as_outline():
