@@ -157,13 +157,34 @@ uint32_t boxtree_near(const Boxtree *t, const Vec2 *pos, Box2 box, double bound2
     return n_out;
 }
 
-static int ascending(gconstpointer a, gconstpointer b, gpointer unused)
+/* By one digit, stably. */
+static void sort_digit(const uint32_t *item, uint32_t n, uint32_t shift, uint32_t *sorted)
 {
-    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
+    uint32_t start[256] = {0};
+    for (uint32_t i = 0; i < n; i++)
+        start[item[i] >> shift & 255]++;
+    for (uint32_t d = 0, sum = 0; d < 256; d++) {
+        uint32_t count = start[d];
+        start[d] = sum;
+        sum += count;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        sorted[start[item[i] >> shift & 255]++] = item[i];
 }
 
-void boxtree_sort(uint32_t *item, uint32_t n) { g_qsort_with_data(item, (gint)n, sizeof *item, ascending, NULL); }
+/* Digit by digit, the lowest first: as many rounds as the largest has. */
+void boxtree_sort(uint32_t *item, uint32_t n)
+{
+    uint32_t few[1024], *room = n <= G_N_ELEMENTS(few) ? few : g_new(uint32_t, n), all = 0;
+    for (uint32_t i = 0; i < n; i++)
+        all |= item[i];
+    for (uint32_t shift = 0; n > 1 && shift < 32 && all >> shift; shift += 8) {
+        sort_digit(item, n, shift, room);
+        memcpy(item, room, sizeof *item * n);
+    }
+    if (room != few)
+        g_free(room);
+}
 
 uint32_t boxtree_rivals(const Boxtree *t, const Vec2 *pos, Box2 box, const Points *near, bool nearest_alone, Points *out, uint32_t cap)
 {

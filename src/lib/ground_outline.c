@@ -1,4 +1,5 @@
 /* The outline: captured from the scan by threshold or by edges, drawn over it, or given. */
+#include "geom/ring.h"
 #include "geom/simplify.h"
 #include "lib/ground_private.h"
 
@@ -109,13 +110,11 @@ static void note_sides(Ground *g, const Params *p, const Threshold *t)
 static double raggedness(const Polygon *p)
 {
     uint32_t *keep = g_new(uint32_t, p->n), n = simplify_polyline(p->v, p->n, 0.02 * vec_dist(vec2(p->box.x0, p->box.y0), vec2(p->box.x1, p->box.y1)), NULL, keep);
-    double whole = 0.0, coarse = 0.0;
-    for (uint32_t i = 0; i < p->n; i++)
-        whole += vec_dist(p->v[i], p->v[(i + 1) % p->n]);
+    double coarse = 0.0;
     for (uint32_t i = 0; i < n; i++)
         coarse += vec_dist(p->v[keep[i]], p->v[keep[(i + 1) % n]]);
     g_free(keep);
-    return whole / coarse;
+    return ring_length(p) / coarse;
 }
 
 /* Where leaf and ground are noisy and nearly of a shade the threshold leaves fringes all around. Of leaves it is 1.3 times as long at most, teeth included. */

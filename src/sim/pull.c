@@ -171,14 +171,14 @@ static __attribute__((noinline)) void sums_make_room(const Simulation *s, Sums *
 }
 
 /* Slots that are not plain, and the last few. */
-static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, uint32_t first, uint32_t last, const Draw *draw, Numbers *late)
+static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, uint32_t first, uint32_t last, const Draw *draw, GArray *late)
 {
     for (uint32_t k = first; k < last; k++) {
         if (s->mark[k] == 0) {
             sums_add(sums, s->near[k], k, k + 1, vec2(draw->x[k - draw->first], draw->y[k - draw->first]), 1);
             sums->live++;
         } else if (late && source_is_late(s, k)) {
-            numbers_add(late, k);
+            g_array_append_val(late, k);
         } else {
             source_pull(s, k, sums);
         }
@@ -186,7 +186,7 @@ static __attribute__((noinline)) void sums_add_each(Simulation *s, Sums *sums, u
 }
 
 /* Slots first … last-1, each with what it pulls. The nothing that pulls of other nodes add to a sum changes no bit. */
-static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, const Draw *draw, Numbers *late)
+static WIDE void sum_run(Simulation *s, Sums *sums, uint32_t first, uint32_t last, const Draw *draw, GArray *late)
 {
     const uint8_t *mark = s->mark;
     const uint32_t *near = s->near;
@@ -244,7 +244,7 @@ static void pull_lone(const Simulation *s, Crowd *c, Sums *sums)
     sums->live += n;
 }
 
-void crowd_pull(Simulation *s, Crowd *c, Sums *sums, const Draw *draw, Numbers *late)
+void crowd_pull(Simulation *s, Crowd *c, Sums *sums, const Draw *draw, GArray *late)
 {
     if (c->lone != NO_POINT) {
         pull_lone(s, c, sums);

@@ -221,6 +221,7 @@ Simulation *simulation_new(const SimulationDef *def, GError **error)
     s->def = *def;
     s->blade = blade;
     s->pool = pool_new(def->threads);
+    s->nodes = g_array_new(FALSE, FALSE, sizeof(uint32_t));
     s->unused_arrival = NO_POINT;
     s->reach = reach_new(def->leaf, def->sinus_depth);
     if (reach_is_trivial(s->reach)) {
@@ -268,8 +269,7 @@ void simulation_free(Simulation *s)
     g_free(s->paths.bits);
     g_free(s->waiting);
     lanes_free(s);
-    numbers_clear(&s->nodes);
-    numbers_clear(&s->late);
+    g_array_unref(s->nodes);
     g_free(s->pulled);
     g_free(s->fresh);
     quadtree_clear(&s->young);

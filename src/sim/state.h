@@ -124,11 +124,6 @@ typedef struct {
     Tally *tally;
 } Sums;
 
-typedef struct {
-    uint32_t *v, n, cap;
-    uint32_t *room, cap_room; /* to sort them in */
-} Numbers;
-
 typedef struct Lane Lane; /* turn.c: what a thread has to itself */
 
 /* Squares of the frame that veins pass through. */
@@ -200,8 +195,7 @@ struct Simulation {
     Points fresh_points; /* the same, unless there are many */
     Pulled *pulled; /* by number of the node */
     uint32_t n_pulled, cap_pulled;
-    Numbers nodes; /* that are pulled */
-    Numbers late;  /* slots where something happens (turn.c) */
+    GArray *nodes; /* uint32_t: that are pulled */
     uint32_t n_live; /* sources that pull */
     uint32_t n_removed;
     Arrival *arrival;
@@ -300,16 +294,13 @@ void sums_end(const Sums *sums); /* enters what is under way */
 void pulls_draw(const Simulation *s, uint32_t first, uint32_t last, const Draw *draw); /* slots first … last-1, at near[] */
 /* Adds what a crowd's sources pull, which are drawn already unless it is lone. With `late`, slots where something happens first (develop.c)
  * are left out and go there. */
-void crowd_pull(Simulation *s, Crowd *c, Sums *sums, const Draw *draw, Numbers *late);
+void crowd_pull(Simulation *s, Crowd *c, Sums *sums, const Draw *draw, GArray *late);
 void source_pull(Simulation *s, uint32_t k, Sums *sums); /* that of slot k, whatever it is */
 double lone_sum(const Vec2 *place, uint32_t n, Vec2 p, Vec2 *sum); /* adds the pulls of n sources on a node at p; returns the largest squared distance */
 
 /* tally.c */
 Pulled *tally_entry(Tally *t, uint32_t node);
 void tallies_join(Simulation *s, const Tally *const *tally, uint32_t n); /* fills pulled[] */
-void numbers_add(Numbers *l, uint32_t number);
-void numbers_sort(Numbers *l); /* ascending */
-void numbers_clear(Numbers *l);
 
 /* turn.c */
 void sources_turn(Simulation *s, bool look, bool remove, bool pull); /* all sources look at the new nodes, go when reached, pull */

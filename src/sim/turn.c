@@ -16,7 +16,7 @@ struct Lane {
     uint32_t seen;         /* sources that the fresh nodes may concern */
     Tally tally;
     Sums sums;
-    Numbers late;
+    GArray *late; /* uint32_t: slots where something happens first (develop.c) */
     double *x, *y; /* [cap] pulls of a crowd */
     uint32_t cap;
     Sight sight;
@@ -54,12 +54,12 @@ static void draw_to(const Lane *l, const Crowd *c, bool wanted, Draw *draw)
     }
 }
 
-static void list_late(const Simulation *s, const Crowd *c, Numbers *late)
+static void list_late(const Simulation *s, const Crowd *c, GArray *late)
 {
     for (uint32_t r = 0; r < CROWD_SIDE; r++)
         for (uint32_t k = c->first[r]; k < c->last[r]; k++)
             if (source_is_late(s, k))
-                numbers_add(late, k);
+                g_array_append_val(late, k);
 }
 
 static void take_unit(const Turn *t, Lane *l, const Unit *u)
@@ -78,9 +78,9 @@ static void take_unit(const Turn *t, Lane *l, const Unit *u)
             for (uint32_t r = 0; r < CROWD_SIDE; r++)
                 pulls_draw(s, c->first[r], c->last[r], &draw[r]);
         if (t->pull)
-            crowd_pull(s, c, &l->sums, draw, t->remove ? &l->late : NULL);
+            crowd_pull(s, c, &l->sums, draw, t->remove ? l->late : NULL);
         else if (t->remove)
-            list_late(s, c, &l->late);
+            list_late(s, c, l->late);
     }
 }
 
@@ -100,7 +100,8 @@ static void take_lane(uint32_t first, uint32_t last, void *user)
 
 static void lane_reset(Lane *l, uint32_t longest)
 {
-    l->seen = l->taken = l->late.n = l->tally.n = 0;
+    l->seen = l->taken = l->tally.n = 0;
+    g_array_set_size(l->late, 0);
     sums_init(&l->sums, &l->tally);
     if (l->cap >= longest)
         return;
@@ -114,6 +115,7 @@ static void make_lanes(Simulation *s, uint32_t lanes)
     while (s->n_lanes < lanes) {
         s->lane = g_renew(Lane *, s->lane, s->n_lanes + 1);
         s->lane[s->n_lanes] = g_aligned_alloc0(1, sizeof(Lane), CACHE_LINES);
+        s->lane[s->n_lanes]->late = g_array_new(FALSE, FALSE, sizeof(uint32_t));
         s->lane[s->n_lanes++]->share = 1;
     }
 }
@@ -185,17 +187,17 @@ static void pace_note(Pace *p, gint64 time, uint32_t sources)
 /* Sources at which something happens go, or pull after all. */
 static void settle_late(Simulation *s, uint32_t lanes, bool pull)
 {
-    Numbers *late = &s->late;
+    GArray *late = s->lane[0]->late;
     Sums *sums = &s->lane[0]->sums;
-    late->n = 0;
-    for (uint32_t i = 0; i < lanes; i++)
-        for (uint32_t j = 0; j < s->lane[i]->late.n; j++)
-            numbers_add(late, s->lane[i]->late.v[j]);
-    numbers_sort(late);
+    for (uint32_t i = 1; i < lanes; i++)
+        if (s->lane[i]->late->len)
+            g_array_append_vals(late, s->lane[i]->late->data, s->lane[i]->late->len);
+    uint32_t *slot = (uint32_t *)(void *)late->data;
+    boxtree_sort(slot, late->len);
     sums_init(sums, &s->lane[0]->tally);
-    for (uint32_t i = 0; i < late->n; i++)
-        if (!source_remove_reached(s, late->v[i]) && pull)
-            source_pull(s, late->v[i], sums);
+    for (uint32_t i = 0; i < late->len; i++)
+        if (!source_remove_reached(s, slot[i]) && pull)
+            source_pull(s, slot[i], sums);
     s->n_live += sums->live;
     sums_end(sums);
 }
@@ -235,7 +237,7 @@ void lanes_free(Simulation *s)
     for (uint32_t i = 0; i < s->n_lanes; i++) {
         Lane *l = s->lane[i];
         g_free(l->tally.pulled);
-        numbers_clear(&l->late);
+        g_array_unref(l->late);
         g_free(l->x);
         g_free(l->y);
         g_aligned_free(l);

@@ -1,12 +1,11 @@
 /* Leaves of the models painted and captured again: the outline is that of the leaf, tips and teeth included. */
 #include <glib.h>
-#include <glib/gstdio.h>
 #include <math.h>
 
 #include "geom/dtrig.h"
-#include "image/file.h"
 #include "image/paint.h"
 #include "lib/leaf.h"
+#include "read_back.h"
 #include "scan/profile.h"
 
 typedef struct {
@@ -58,7 +57,6 @@ static Vec2 *turned(const Vec2 *v, uint32_t n, double angle)
 /* The base colour on white, through a file. */
 static Scan *painted(const Network *net, const Frame *frame)
 {
-    GError *error = NULL;
     PaintStyle style = paint_style_default();
     style.padding = 4;
     Painter *painter = painter_new(net, frame, &style);
@@ -66,15 +64,7 @@ static Scan *painted(const Network *net, const Frame *frame)
     for (gsize i = 0; i < (gsize)colour->width * colour->height; i++)
         for (int c = 0; c < 3; c++)
             colour->px[3 * i + c] = colour->px[3 * i + c] * opacity->px[i] + (1.0f - opacity->px[i]);
-    char *dir = g_dir_make_tmp("venation-round-XXXXXX", &error), *path = g_build_filename(dir, "leaf.png", NULL);
-    image_write_png(colour, path, 8, NULL, &error);
-    g_assert_no_error(error);
-    Scan *s = scan_read(path, 0, &error);
-    g_assert_no_error(error);
-    g_unlink(path);
-    g_rmdir(dir);
-    g_free(path);
-    g_free(dir);
+    Scan *s = read_back(colour);
     plane_free(colour);
     plane_free(opacity);
     painter_free(painter);

@@ -1,15 +1,14 @@
 /* Veins found again in pictures of grown leaves whose veins are known: models of the paper at reduced size, as specimens, turned. With -m slow all of them,
  * with --verbose the table of params/scans/README.md. */
 #include <glib.h>
-#include <glib/gstdio.h>
 #include <math.h>
 
 #include "geom/dtrig.h"
-#include "image/file.h"
 #include "image/specimen.h"
 #include "lib/leaf.h"
 #include "lib/settings.h"
 #include "lib/writer.h"
+#include "read_back.h"
 #include "scan/found.h"
 #include "scan/profile.h"
 
@@ -66,22 +65,13 @@ static VenLeaf *grown(const Model *m)
 /* As a scanner sees it, through a file as any scan. */
 static Scan *picture(const VenLeaf *leaf, const Frame *frame)
 {
-    GError *error = NULL;
     Writer w;
     writer_init(&w, leaf, ".", "");
     SpecimenDef def = settings_specimen(leaf->params, leaf->seed);
     Painter *painter = writer_painter(&w, frame);
     Specimen *specimen = specimen_new(painter, &def);
     Plane *plane = specimen_paint(specimen);
-    char *dir = g_dir_make_tmp("venation-models-XXXXXX", &error), *path = g_build_filename(dir, "leaf.png", NULL);
-    image_write_png(plane, path, 8, NULL, &error);
-    g_assert_no_error(error);
-    Scan *s = scan_read(path, 0, &error);
-    g_assert_no_error(error);
-    g_unlink(path);
-    g_rmdir(dir);
-    g_free(path);
-    g_free(dir);
+    Scan *s = read_back(plane);
     plane_free(plane);
     specimen_free(specimen);
     painter_free(painter);

@@ -173,40 +173,45 @@ static void test_noise(void)
     }
 }
 
+/* How far what is captured goes on beyond the apex. Frees the scan. */
+static double beyond(Scan *s, Vec2 apex, Vec2 axis)
+{
+    Polygon *p = captured(s, 0.0);
+    Vec2 far = vec_add(apex, vec_scale(axis, 30.0));
+    double by = vec_dot(vec_sub(polygon_nearest(p, far, NULL), apex), axis);
+    polygon_free(p);
+    scan_free(s);
+    return by;
+}
+
+static Scan *drop_on_sheet(const Polygon *truth)
+{
+    Scan *s = sheet();
+    paint(s, truth, 1.0);
+    return s;
+}
+
 /* Lines that go on where a tip ends, lines across it, and specks. */
 static void test_clutter(void)
 {
     double hair = 0.0, grid = 0.0, speck = 0.0;
     for (uint32_t k = 0; k < 12; k++) {
-        Vec2 apex, axis, far;
-        Polygon *truth = some_drop(100 + k, 6.0 + 4.0 * (k % 4), &apex, &axis), *p;
-        Scan *s = sheet();
-        paint(s, truth, 1.0);
-        far = vec_add(apex, vec_scale(axis, 30.0));
+        Vec2 apex, axis;
+        Polygon *truth = some_drop(100 + k, 6.0 + 4.0 * (k % 4), &apex, &axis);
+        Scan *s = drop_on_sheet(truth);
         line(s, vec_sub(apex, vec_scale(axis, 8.0)), vec_add(apex, vec_scale(axis, 60.0)), 0.4, 1.0);
-        p = captured(s, 0.0);
-        hair = MAX(hair, vec_dot(vec_sub(polygon_nearest(p, far, NULL), apex), axis));
-        polygon_free(p);
-        scan_free(s);
-        s = sheet();
-        paint(s, truth, 1.0);
+        hair = MAX(hair, beyond(s, apex, axis));
+        s = drop_on_sheet(truth);
         for (double x = 4.3; x < SIZE; x += 12.0) {
             line(s, vec2(x, 0.0), vec2(x, SIZE), 1.0, 0.35);
             line(s, vec2(0.0, x), vec2(SIZE, x), 1.0, 0.35);
         }
-        p = captured(s, 0.0);
-        grid = MAX(grid, vec_dot(vec_sub(polygon_nearest(p, far, NULL), apex), axis));
-        polygon_free(p);
-        scan_free(s);
-        s = sheet();
-        paint(s, truth, 1.0);
+        grid = MAX(grid, beyond(s, apex, axis));
+        s = drop_on_sheet(truth);
         Vec2 side = vec_scale(vec2(-axis.y, axis.x), 3.0 * uniform(9, k) - 1.5);
         line(s, vec_add(vec_add(apex, side), vec_scale(axis, 1.0 + 3.0 * uniform(8, k))), vec_add(vec_add(apex, side), vec_scale(axis, 6.0)), 2.0, 0.9);
-        p = captured(s, 0.0);
-        speck = MAX(speck, vec_dot(vec_sub(polygon_nearest(p, far, NULL), apex), axis));
-        polygon_free(p);
+        speck = MAX(speck, beyond(s, apex, axis));
         polygon_free(truth);
-        scan_free(s);
     }
     g_test_message("beyond the apex: on along a hair %.2f, over a grid %.2f, to a speck %.2f", hair, grid, speck);
     g_assert_cmpfloat(hair, <, 0.5);

@@ -36,16 +36,22 @@ static const Marks MARKS[] = {
       {3207, 2229}}},
 };
 
+static FangProfile *captured(const Scan *s)
+{
+    FangDef def = fang_def_default();
+    GError *error = NULL;
+    FangProfile *p = fang_capture(s, &def, &error);
+    g_assert_no_error(error);
+    return p;
+}
+
 static void test_marks(gconstpointer user)
 {
     const Marks *m = user;
     Scan *s = real_scan(m->file);
     if (!s)
         return;
-    FangDef def = fang_def_default();
-    GError *error = NULL;
-    FangProfile *p = fang_capture(s, &def, &error);
-    g_assert_no_error(error);
+    FangProfile *p = captured(s);
     uint32_t n = 0, missed = 0;
     double sum = 0.0, most = 0.0;
     for (; n < MOST && m->mark[n].x > 0.0; n++) {
@@ -76,10 +82,7 @@ static void test_petiole(void)
     Scan *s = real_scan("grape_303.jpg");
     if (!s)
         return;
-    FangDef def = fang_def_default();
-    GError *error = NULL;
-    FangProfile *p = fang_capture(s, &def, &error);
-    g_assert_no_error(error);
+    FangProfile *p = captured(s);
     for (guint i = 0; i < G_N_ELEMENTS(on); i++)
         g_assert_cmpfloat(polygon_depth(p->contour, vec2(on[i].x + 0.5, s->height - on[i].y - 0.5)), >, 5.0);
     fang_profile_free(p);
